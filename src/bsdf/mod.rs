@@ -1,0 +1,38 @@
+//! Smooth scatter: the lobes of a surface. One model, one file.
+//!
+//! Local frame z up on the side the light comes from; `wi` and `wo` are unit and point away from the surface;
+//! `wo.z > 0` is reflected, `wo.z < 0` transmitted. A BSDF f is dL_s / dE_i, 1/sr; scattered flux into dw is
+//! f |cos theta_s| dw times the incident flux.
+
+pub mod abg;
+pub mod lambertian;
+pub mod tabulated;
+
+use crate::math::Rng;
+use crate::optics::Incidence;
+use glam::DVec3;
+
+pub use abg::Abg;
+pub use lambertian::Lambertian;
+pub use tabulated::Tabulated;
+
+/// A scatter model. `eval`, `pdf`, `sample` and `albedo` describe one and the same function at every incidence.
+pub trait Bsdf: Send + Sync + std::fmt::Debug {
+    /// f(wi -> wo), 1/sr, >= 0.
+    fn eval(&self, at: &Incidence, wo: DVec3) -> f64;
+
+    /// Density of `sample`'s directions per solid angle, 1/sr; positive wherever `eval` is (to which it need not be proportional).
+    fn pdf(&self, at: &Incidence, wo: DVec3) -> f64;
+
+    /// Draws a direction with density `pdf`. `None`: the draw fell outside the hemispheres that light can take;
+    /// it counts as a draw of weight zero, and `pdf` does not integrate to 1 then.
+    fn sample(&self, at: &Incidence, rng: &mut Rng) -> Option<DVec3>;
+
+    /// Scattered / incident flux at this incidence (the TIS), 0..1: the integral of f |cos| over all directions.
+    fn albedo(&self, at: &Incidence) -> f64;
+
+    /// True if some light is transmitted.
+    fn transmits(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,20 @@
+//! Interfaces: what is specular at a surface. One model, one file.
+
+pub mod bare;
+pub mod ideal;
+pub mod mirror;
+
+use crate::optics::{Incidence, Split};
+
+pub use bare::Bare;
+pub use ideal::Ideal;
+pub use mirror::Mirror;
+
+/// What a surface does to the specular part of light.
+pub trait Coating: Send + Sync + std::fmt::Debug {
+    /// Reflected and transmitted amplitudes at this incidence; 1 - R - T is absorbed in the interface.
+    fn split(&self, at: &Incidence) -> Split;
+
+    /// True where nothing is ever transmitted: a reflection there is what the designer meant, not a ghost.
+    fn opaque(&self) -> bool;
+}

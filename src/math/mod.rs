@@ -1,0 +1,10 @@
+//! Mathematics with no optics in it: random numbers, low-discrepancy points, sampling, tables, statistics.
+
+pub mod lowdiscrepancy;
+pub mod quadrature;
+pub mod rng;
+pub mod sampling;
+pub mod statistics;
+pub mod table;
+
+pub use rng::Rng;

@@ -1,0 +1,11 @@
+//! What happens to light at a point: incidence, polarisation, reflection, refraction, Fresnel's amplitudes.
+
+pub mod amplitudes;
+pub mod fresnel;
+pub mod incidence;
+pub mod refraction;
+pub mod stokes;
+
+pub use amplitudes::{Amplitudes, Split};
+pub use incidence::Incidence;
+pub use stokes::Stokes;

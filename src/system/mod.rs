@@ -1,0 +1,6 @@
+//! The system as written: RON document, glTF geometry, and the compiler that turns both into a scene.
+
+pub mod document;
+pub mod gltf;
+pub mod select;
+pub mod units;

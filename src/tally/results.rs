@@ -1,0 +1,181 @@
+//! What a run found: plain numbers with names, ready to be written down.
+//!
+//! Everything here is the same bits for the same system, seed and rays, whatever the threads; times and hosts are kept apart.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A mean over batches with its standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Sample mean over the batches, in the unit of its context.
+    pub mean: f64,
+    /// Standard error of the mean (one sigma), same unit; from the scatter of the batch means.
+    pub error: f64,
+}
+
+/// Where the watts went, W.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct LedgerResult {
+    pub emitted: Estimate,
+    /// In surfaces and in media.
+    pub absorbed: Estimate,
+    /// Left the scene.
+    pub escaped: Estimate,
+    /// Cut by roulette (net, zero on average) and by order limits.
+    pub terminated: Estimate,
+    /// Geometry faults, by cause in `Results::lost_w`.
+    pub lost: Estimate,
+    /// emitted - absorbed - escaped - terminated - lost: zero within its error.
+    pub residual: Estimate,
+}
+
+/// The brightest bin. A maximum is biased upward by noise: `error` is that of the bin, not of the maximum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Peak {
+    pub mean: f64,
+    pub error: f64,
+    /// [row, column].
+    pub pixel: [usize; 2],
+}
+
+/// What one detector saw.
+#[derive(Clone, Debug, Serialize)]
+pub struct DetectorResult {
+    /// Flux over the whole detector, W.
+    pub flux_w: Estimate,
+    /// Half-width of the 95 % interval of `flux_w` by Student's t, W.
+    pub interval95_w: f64,
+    /// Source rays that contributed.
+    pub rays: u64,
+    /// If nothing arrived: 3 x the largest flux that one source ray carries / N, W; else null.
+    pub upper_limit_w: Option<f64>,
+    /// Brightest bin, in `unit` (W/m2 or W/sr). Named by the unit of irradiance maps, the common case.
+    pub peak_w_m2: Peak,
+    /// Unit of the map.
+    pub unit: String,
+    /// Flux by class, W: "signal", "direct leak", "ghost 1", "scatter 1", ... All rows add up to `flux_w`.
+    pub classes: BTreeMap<String, Estimate>,
+    /// Fraction of bins with fewer than 30 contributing source rays among those with any, 0..1.
+    pub unresolved: f64,
+}
+
+/// One row of the path table.
+#[derive(Clone, Debug, Serialize)]
+pub struct PathResult {
+    pub detector: String,
+    pub source: String,
+    /// "sun > Lens_1.front:T > ... > Barrel:S"; "other" for what had no row of its own.
+    pub sequence: String,
+    pub class: String,
+    /// Contributing source rays.
+    pub rays: u64,
+    pub flux_w: Estimate,
+    /// Of the detector's total, %.
+    pub percent: f64,
+    pub ghost_order: u32,
+    pub scatter_order: u32,
+    /// Name of the last surface that scattered, empty if none did.
+    pub last_scatter: String,
+    /// Flux-weighted mean optical path, m.
+    pub optical_path_m: f64,
+    /// Largest irradiance in a cell of the coarse grid (see `Results::path_grid`), W/m2.
+    pub peak_w_m2: f64,
+}
+
+/// One detector's map. Bins are row-major: index = row * columns + column.
+#[derive(Clone, Debug)]
+pub struct MapResult {
+    pub detector: String,
+    pub kind: MapKind,
+    /// [rows, columns]; triangles as bins: [1, n].
+    pub shape: [usize; 2],
+    /// Physical lengths (m) or angles (rad) of the first bin's lower edge and the step, along columns then rows; None for triangles.
+    pub axes: Option<[Axis; 2]>,
+    /// "W/m2" or "W/sr".
+    pub unit: &'static str,
+    /// Per bin, in `unit`.
+    pub mean: Vec<f64>,
+    pub error: Vec<f64>,
+    /// Contributing source rays per bin.
+    pub rays: Vec<u64>,
+    /// Where no ray arrived: 3 x the largest flux one source ray carries / (N x bin size), in `unit`; else 0.
+    pub upper: Vec<f64>,
+    /// Bin sizes, m2 or sr.
+    pub extent: Vec<f64>,
+    /// World position (m) of the grid's origin corner and unit vectors of columns and rows: for captions.
+    pub origin: [f64; 3],
+    pub column_direction: [f64; 3],
+    pub row_direction: [f64; 3],
+    /// Seen from this side (front: looking against the detector's normal).
+    pub side: &'static str,
+}
+
+/// How the bins lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapKind {
+    /// Pixels on a plane.
+    Plane,
+    /// Rows: polar angle from the axis; columns: azimuth.
+    Polar,
+    /// Rows: rings of equal projected solid angle (sin^2 theta); columns: azimuth.
+    Projected,
+    /// One bin per triangle.
+    Triangles,
+}
+
+/// One axis of a map.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    pub name: String,
+    /// "m" or "rad" or "sin2".
+    pub unit: &'static str,
+    /// Lower edge of bin 0.
+    pub start: f64,
+    pub step: f64,
+}
+
+/// Everything that depends only on system, seed and rays.
+#[derive(Clone, Debug, Serialize)]
+pub struct Results {
+    pub system: String,
+    /// Source rays traced: the request rounded up to whole batches, or what an interrupted run finished.
+    pub rays: u64,
+    pub rays_requested: u64,
+    pub seed: u64,
+    pub batch_rays: u64,
+    pub batches: u64,
+    pub detectors: BTreeMap<String, DetectorResult>,
+    pub ledger_w: LedgerResult,
+    /// Absorbed flux by surface, W; bulk absorption as "medium NAME".
+    pub absorbed_w: BTreeMap<String, Estimate>,
+    /// Flux lost to geometry faults by cause, W.
+    pub lost_w: BTreeMap<String, Estimate>,
+    /// Flux cut by cause ("roulette", "max_scatters", ...), W.
+    pub terminated_w: BTreeMap<String, Estimate>,
+    pub warnings: Vec<String>,
+    /// SHA-256 of every file that was read, by name as written.
+    pub inputs: BTreeMap<String, String>,
+    /// Cells along each side of the grid on which a path's peak is given.
+    pub path_grid: usize,
+    #[serde(skip)]
+    pub paths: Vec<PathResult>,
+    #[serde(skip)]
+    pub maps: Vec<MapResult>,
+}
+
+/// How the run went: differs from machine to machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunInfo {
+    pub version: String,
+    pub threads: usize,
+    pub seconds: f64,
+    pub rays_per_s: f64,
+    pub segments: u64,
+    pub segments_per_s: f64,
+    pub host: String,
+    /// True if a signal or a limit ended it early; the finished prefix is in the results.
+    pub interrupted: bool,
+    /// The command line to repeat it.
+    pub command: String,
+}
