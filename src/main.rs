@@ -1,1 +1,21 @@
-fn main() {}
+//! Arguments -> verb -> exit code.
+
+mod cli;
+
+use clap::Parser;
+use cli::{Cli, Verb};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return cli::usage(error),
+    };
+    let done = match cli.verb {
+        Verb::Run(args) => cli::run::run(&args),
+        Verb::Check(args) => cli::check::check(&args),
+        Verb::Ray(args) => cli::ray::ray(&args),
+        Verb::Schema => cli::schema::schema(),
+    };
+    cli::conclude(done)
+}

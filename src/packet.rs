@@ -1,1 +1,283 @@
-//! (to come)
+//! Flux in flight: one packet of light and how it got here.
+
+use crate::film::Film;
+use crate::geometry::Left;
+use crate::geometry::Ray;
+use crate::math::Rng;
+use crate::math::rng::mix;
+use crate::optics::Stokes;
+use arrayvec::ArrayVec;
+use glam::DVec3;
+
+/// A packet of light. It carries its flux in `V` lanes, one per variant of the system (same geometry, other finish).
+#[derive(Clone, Debug)]
+pub struct Packet<const V: usize> {
+    pub ray: Ray,
+    /// Stokes vector of each lane, W, in the frame (transverse, direction x transverse, direction).
+    pub light: [Stokes; V],
+    /// Unit, perpendicular to the direction: Q > 0 means polarised along it.
+    pub transverse: DVec3,
+    /// Vacuum wavelength, m.
+    pub wavelength: f64,
+    /// The solids it is in.
+    pub solids: Solids,
+    /// What it just left: never hit again at once.
+    pub left: Left,
+    /// The film between two faces that it is in.
+    pub film: Option<Box<Film>>,
+    pub rng: Rng,
+    pub ancestry: Ancestry,
+}
+
+impl<const V: usize> Packet<V> {
+    /// Largest flux of any lane, W.
+    pub fn flux(&self) -> f64 {
+        self.light.iter().fold(0.0, |most, light| most.max(light.i))
+    }
+
+    /// Every lane's flux, W.
+    pub fn fluxes(&self) -> [f64; V] {
+        self.light.map(|light| light.i)
+    }
+}
+
+/// Set of solids (indices into `Scene::solids`) that a packet is in, at most eight deep.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Solids(ArrayVec<u16, 8>);
+
+impl Solids {
+    /// Goes in; false if it was in already or the nesting is too deep.
+    pub fn enter(&mut self, solid: u16) -> bool {
+        !self.0.contains(&solid) && self.0.try_push(solid).is_ok()
+    }
+
+    /// Goes out; false if it was not in.
+    pub fn leave(&mut self, solid: u16) -> bool {
+        let found = self.0.iter().position(|&s| s == solid);
+        found.map(|i| self.0.swap_remove(i)).is_some()
+    }
+
+    /// True in the ambient.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = u16> + '_ {
+        self.0.iter().copied()
+    }
+}
+
+/// What a surface did to the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Event {
+    Reflect = 0,
+    Transmit = 1,
+    Scatter = 2,
+}
+
+impl Event {
+    /// One letter, as path tables write it.
+    pub fn letter(self) -> char {
+        ['R', 'T', 'S'][self as usize]
+    }
+}
+
+/// A part and what it did, in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Step(u32);
+
+impl Step {
+    /// What part `part` (below 2^30) did.
+    pub fn new(part: u32, event: Event) -> Step {
+        Step(part << 2 | event as u32)
+    }
+
+    pub fn part(self) -> u32 {
+        self.0 >> 2
+    }
+
+    pub fn event(self) -> Event {
+        [Event::Reflect, Event::Transmit, Event::Scatter, Event::Scatter][(self.0 & 3) as usize]
+    }
+}
+
+/// Steps that a path key spells out; longer paths are booked in the row "other".
+pub const LONGEST_PATH: usize = 24;
+
+/// How a packet got here.
+#[derive(Clone, Debug)]
+pub struct Ancestry {
+    /// Index of its source.
+    pub source: u16,
+    /// Number of its source ray.
+    pub history: u64,
+    /// Address of its branch of the event tree (see `Rng`).
+    pub branch: u64,
+    /// Surface events so far.
+    pub events: u32,
+    /// Hash of (source, steps so far): names the path.
+    pub key: u64,
+    pub steps: ArrayVec<Step, LONGEST_PATH>,
+    /// Reflections at surfaces that can transmit: the ghost order, and what the splitting budget counts.
+    pub ghosts: u16,
+    /// Scatter events.
+    pub scatters: u16,
+    /// Reflections of any kind.
+    pub reflections: u32,
+    /// True once an optical element (mirror or interface) was met.
+    pub optics: bool,
+    pub last_scatter: Option<u32>,
+    /// Optical path since the source, m.
+    pub optical_path: f64,
+}
+
+impl Ancestry {
+    /// A newborn packet of source ray `history` from source `source`.
+    pub fn born(source: u16, history: u64) -> Ancestry {
+        Ancestry {
+            source,
+            history,
+            branch: 0,
+            events: 0,
+            key: mix(source as u64 + 1),
+            steps: ArrayVec::new(),
+            ghosts: 0,
+            scatters: 0,
+            reflections: 0,
+            optics: false,
+            last_scatter: None,
+            optical_path: 0.0,
+        }
+    }
+
+    /// Takes one more step. `intended`: this surface is there to do just that (a mirror reflects).
+    pub fn step(&mut self, part: u32, event: Event, intended: bool) {
+        self.events += 1;
+        let step = Step::new(part, event);
+        self.key = mix(self.key.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (step.0 as u64 + 1));
+        // A longer path has no row of its own: its key is never admitted, so its tail need not be spelled.
+        let _ = self.steps.try_push(step);
+        match event {
+            Event::Reflect => {
+                self.reflections += 1;
+                // Light trapped by total reflection can go round more often than that.
+                self.ghosts = self.ghosts.saturating_add(!intended as u16);
+                self.optics = true;
+            }
+            Event::Transmit => self.optics = true,
+            Event::Scatter => {
+                self.scatters = self.scatters.saturating_add(1);
+                self.last_scatter = Some(part);
+            }
+        }
+    }
+
+    /// Signal, leak, ghost or scatter: see [`Class`].
+    pub fn class(&self) -> Class {
+        match (self.scatters, self.ghosts) {
+            (0, 0) if self.optics => Class::Signal,
+            (0, 0) => Class::Direct,
+            (0, n) => Class::Ghost(n.min(Class::MOST_GHOSTS)),
+            (n, _) => Class::Scatter(n.min(Class::MOST_SCATTERS)),
+        }
+    }
+}
+
+/// What kind of light arrived (PHYSICS: signal and stray).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// Through the optics as the designer meant: transmissions and designed mirrors only.
+    Signal,
+    /// From the source without touching anything: a leak if the system has optics, else the signal.
+    Direct,
+    /// No scatter, n unintended reflections.
+    Ghost(u16),
+    /// n scatter events, whatever else.
+    Scatter(u16),
+}
+
+impl Class {
+    pub const MOST_GHOSTS: u16 = 6;
+    pub const MOST_SCATTERS: u16 = 8;
+    /// Number of classes.
+    pub const COUNT: usize = 2 + Self::MOST_GHOSTS as usize + Self::MOST_SCATTERS as usize;
+
+    /// 0..COUNT.
+    pub fn index(self) -> usize {
+        match self {
+            Class::Signal => 0,
+            Class::Direct => 1,
+            Class::Ghost(n) => 1 + n as usize,
+            Class::Scatter(n) => 1 + Self::MOST_GHOSTS as usize + n as usize,
+        }
+    }
+
+    /// Inverse of `index`.
+    pub fn from_index(index: usize) -> Class {
+        let ghosts = Self::MOST_GHOSTS as usize;
+        match index {
+            0 => Class::Signal,
+            1 => Class::Direct,
+            i if i < 2 + ghosts => Class::Ghost((i - 1) as u16),
+            i => Class::Scatter((i - 1 - ghosts) as u16),
+        }
+    }
+
+    /// As reports write it: "signal", "direct leak" ("direct" where nothing else could be the signal), "ghost 2", "scatter 8+".
+    pub fn label(self, has_optics: bool) -> String {
+        let more = |n: u16, most: u16| if n == most { format!("{n}+") } else { n.to_string() };
+        match self {
+            Class::Signal => "signal".into(),
+            Class::Direct if has_optics => "direct leak".into(),
+            Class::Direct => "direct".into(),
+            Class::Ghost(n) => format!("ghost {}", more(n, Self::MOST_GHOSTS)),
+            Class::Scatter(n) => format!("scatter {}", more(n, Self::MOST_SCATTERS)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_and_indices_are_inverse() {
+        for i in 0..Class::COUNT {
+            assert_eq!(Class::from_index(i).index(), i);
+        }
+    }
+
+    #[test]
+    fn different_paths_have_different_keys() {
+        let mut keys = std::collections::HashSet::new();
+        for part in 0..40 {
+            for event in [Event::Reflect, Event::Transmit, Event::Scatter] {
+                for second in 0..40 {
+                    let mut a = Ancestry::born(0, 0);
+                    a.step(part, event, false);
+                    a.step(second, Event::Reflect, false);
+                    assert!(keys.insert(a.key));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn trapped_light_stays_a_ghost_however_often_it_is_reflected() {
+        let mut ancestry = Ancestry::born(0, 0);
+        for _ in 0..=u16::MAX as u32 + 1 {
+            ancestry.step(0, Event::Reflect, false);
+        }
+        assert_eq!((ancestry.ghosts, ancestry.reflections), (u16::MAX, u16::MAX as u32 + 2));
+        assert_eq!(ancestry.class(), Class::Ghost(Class::MOST_GHOSTS));
+    }
+
+    #[test]
+    fn solids_remember_what_they_are_in() {
+        let mut solids = Solids::default();
+        assert!(solids.enter(3) && solids.enter(1) && !solids.enter(3));
+        assert!(solids.leave(3) && !solids.leave(3));
+        assert_eq!(solids.iter().collect::<Vec<_>>(), [1]);
+    }
+}

@@ -1,1 +1,147 @@
-//! (to come)
+//! A surface: what is specular, what scatters, and in which order.
+//!
+//! With incident flux 1, specular reflectance R and transmittance T of the coating, and the lobes' albedos
+//! a_r (reflected) and a_t (transmitted) at this incidence, a = a_r + a_t:
+//!
+//! | order        | scattered        | specular                  |
+//! |--------------|------------------|---------------------------|
+//! | ScatterFirst | a                | (1 - a) R, (1 - a) T      |
+//! | Scaled       | R a_r + T a_t    | (1 - a_r) R, (1 - a_t) T  |
+//! | Total        | a                | 0, (1 - a) T              |
+//!
+//! ScatterFirst: TIS is measured against the incident flux and the coating acts on the rest. Scaled: the BSDF is that of the
+//! uncoated shape and the coating scales it. Total: the table already contains the specular reflection.
+//! What remains is absorbed.
+
+use crate::bsdf::Bsdf;
+use crate::coating::Coating;
+use crate::math::Rng;
+use crate::optics::{Incidence, Split};
+use glam::DVec3;
+
+/// How scatter and coating share the light (see the module).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Order {
+    #[default]
+    ScatterFirst,
+    Scaled,
+    Total,
+}
+
+/// Whether scatter is traced or its flux is cut and booked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scattering {
+    #[default]
+    On,
+    Off,
+}
+
+/// One finish: an interface plus lobes.
+#[derive(Debug)]
+pub struct Surface {
+    pub label: String,
+    /// The specular part; `None`: absorbed.
+    pub specular: Option<Box<dyn Coating>>,
+    pub lobes: Vec<Box<dyn Bsdf>>,
+    pub order: Order,
+    pub scattering: Scattering,
+}
+
+/// The bill of one arrival, fractions of the incident flux: what each branch gets, before polarisation.
+#[derive(Clone, Copy, Debug)]
+pub struct Shares {
+    /// Coating amplitudes, to be applied to the Stokes vector.
+    pub split: Option<Split>,
+    /// Factors on the coating's reflected and transmitted flux.
+    pub specular: [f64; 2],
+    /// Factors on the lobes' BSDF, reflected and transmitted side; polarisation-averaged.
+    pub lobes: [f64; 2],
+    /// Scattered fraction of the incident flux.
+    pub scattered: f64,
+}
+
+impl Surface {
+    /// True if light never passes: a reflection here is meant, not a ghost.
+    pub fn opaque(&self) -> bool {
+        self.specular.as_ref().is_none_or(|c| c.opaque()) && !self.lobes.iter().any(|l| l.transmits())
+    }
+
+    /// True if it mirrors or refracts: an optical element, not a wall.
+    pub fn optical(&self) -> bool {
+        self.specular.is_some()
+    }
+
+    /// True for a bare interface without scatter: it yields to a declared finish where faces lie on each other.
+    pub fn is_plain(&self) -> bool {
+        self.lobes.is_empty() && self.specular.as_ref().is_some_and(|c| c.bare())
+    }
+
+    /// How the flux is shared at this incidence.
+    pub fn shares(&self, at: &Incidence) -> Shares {
+        let split = self.specular.as_ref().map(|coating| coating.split(at));
+        if self.lobes.is_empty() {
+            return Shares { split, specular: [1.0; 2], lobes: [0.0; 2], scattered: 0.0 };
+        }
+        let [back, through] = self.albedo(at);
+        let all = back + through;
+        match self.order {
+            Order::ScatterFirst => Shares { split, specular: [1.0 - all; 2], lobes: [1.0; 2], scattered: all },
+            Order::Total => Shares { split, specular: [0.0, 1.0 - all], lobes: [1.0; 2], scattered: all },
+            Order::Scaled => {
+                let r = split.map_or(1.0, |s| s.reflected.unpolarised());
+                let t = split.map_or(1.0, |s| s.transmitted.unpolarised());
+                Shares {
+                    split,
+                    specular: [1.0 - back, 1.0 - through],
+                    lobes: [r, t],
+                    scattered: r * back + t * through,
+                }
+            }
+        }
+    }
+
+    /// Reflected and transmitted albedo of all lobes together, 0..1 each.
+    pub fn albedo(&self, at: &Incidence) -> [f64; 2] {
+        let mut albedo = [0.0; 2];
+        for lobe in &self.lobes {
+            albedo[lobe.transmits() as usize] += lobe.albedo(at);
+        }
+        albedo
+    }
+
+    /// Draws a scattered direction from the one mixture of all lobes. `None`: the draw left the hemispheres that light can
+    /// take; it carries nothing, and the mean stays right because `density` integrates to the chance of a valid draw.
+    pub fn draw(&self, at: &Incidence, shares: &Shares, rng: &mut Rng) -> Option<DVec3> {
+        if let [lobe] = self.lobes.as_slice() {
+            return lobe.sample(at, rng);
+        }
+        let mut rest = rng.uniform();
+        let chosen = self.lobes.iter().find(|lobe| {
+            rest -= shares.chance(lobe.as_ref(), at);
+            rest < 0.0
+        });
+        chosen.or(self.lobes.last())?.sample(at, rng)
+    }
+
+    /// Density of `draw`'s directions, 1/sr.
+    pub fn density(&self, at: &Incidence, shares: &Shares, wo: DVec3) -> f64 {
+        if let [lobe] = self.lobes.as_slice() {
+            return lobe.pdf(at, wo);
+        }
+        self.lobes.iter().map(|lobe| shares.chance(lobe.as_ref(), at) * lobe.pdf(at, wo)).sum()
+    }
+
+    /// f |cos theta_s| of all lobes together as the coating lets it through, 1/sr: scattered flux per solid angle and
+    /// incident flux.
+    pub fn value(&self, at: &Incidence, shares: &Shares, wo: DVec3) -> f64 {
+        let f: f64 = self.lobes.iter().map(|lobe| shares.lobes[lobe.transmits() as usize] * lobe.eval(at, wo)).sum();
+        f * wo.z.abs()
+    }
+}
+
+impl Shares {
+    /// Probability that a lobe is the one drawn from: its part of the scattered flux.
+    fn chance(&self, lobe: &dyn Bsdf, at: &Incidence) -> f64 {
+        self.lobes[lobe.transmits() as usize] * lobe.albedo(at) / self.scattered
+    }
+}

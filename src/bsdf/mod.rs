@@ -6,13 +6,14 @@
 
 pub mod abg;
 pub mod lambertian;
+pub mod speos;
 pub mod tabulated;
 
 use crate::math::Rng;
 use crate::optics::Incidence;
 use glam::DVec3;
 
-pub use abg::Abg;
+pub use abg::{Abg, Side};
 pub use lambertian::Lambertian;
 pub use tabulated::Tabulated;
 

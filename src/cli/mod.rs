@@ -1,1 +1,110 @@
-//! (to come)
+//! The command line: one file per verb. The only place that prints.
+
+pub mod check;
+pub mod ray;
+pub mod run;
+pub mod schema;
+mod stop;
+mod table;
+
+use clap::{Parser, Subcommand};
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use straylight::error::{Error, Problem};
+use straylight::report::problems;
+use straylight::system::compile::{Compiled, compile};
+use straylight::system::document::Document;
+
+/// Threads that may be asked for.
+const THREADS: std::ops::RangeInclusive<i64> = 1..=4096;
+
+/// Stray light of optical systems: watts on the detector with error bars, by path, in a ledger that closes
+#[derive(Parser)]
+#[command(version, max_term_width = 100, after_help = EXAMPLE)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  straylight check systems/triplet/system.ron
+  straylight run systems/triplet/system.ron -o report";
+
+/// What to do.
+#[derive(Subcommand)]
+pub enum Verb {
+    /// Trace a system and write a report
+    Run(run::RunArgs),
+    /// Say what was understood of a system, without tracing it
+    Check(check::CheckArgs),
+    /// Trace one packet of 1 W and print every event
+    Ray(ray::RayArgs),
+    /// Print the grammar of a system file, as a commented example
+    #[command(after_help = "Example:\n  straylight schema > system.ron")]
+    Schema,
+}
+
+/// How a verb ended.
+pub enum Ending {
+    Done,
+    /// Finished, but not to be trusted.
+    Doubtful,
+    /// Told to stop; the exit code that says by what.
+    Interrupted(u8),
+}
+
+/// Prints the error, if any; the exit code.
+pub fn conclude(done: Result<Ending, Error>) -> ExitCode {
+    match done {
+        Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::Doubtful) => ExitCode::from(3),
+        Ok(Ending::Interrupted(code)) => ExitCode::from(code),
+        Err(error) => {
+            let told = problems::render(error.problems(), &text_of);
+            // The problems begin with the same one line.
+            say(&if told.is_empty() { format!("{error}\n") } else { told });
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+/// Arguments that clap refused, or its help.
+pub fn usage(error: clap::Error) -> ExitCode {
+    let asked = !error.use_stderr();
+    // Nobody is left to tell if the terminal is gone.
+    let _ = error.print();
+    ExitCode::from(if asked { 0 } else { 64 })
+}
+
+/// Writes to standard error, whatever happens to it.
+pub fn say(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Writes to standard output; a closed pipe is not an error.
+pub fn tell(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// The text of a file that a problem is in, if it is one to show lines of.
+fn text_of(path: &Path) -> Option<String> {
+    const LARGEST: u64 = 1 << 20;
+    let small = std::fs::metadata(path).is_ok_and(|meta| meta.is_file() && meta.len() <= LARGEST);
+    small.then(|| std::fs::read_to_string(path).ok()).flatten()
+}
+
+/// Reads and compiles a system; warnings go to standard error.
+pub fn load(system: &Path) -> Result<Compiled, Error> {
+    let compiled = compile(&Document::read(system)?)?;
+    warn(&compiled.warnings);
+    Ok(compiled)
+}
+
+/// Warnings, a line each.
+pub fn warn(warnings: &[Problem]) {
+    for warning in warnings {
+        say(&format!("{warning}\n"));
+    }
+}

@@ -2,12 +2,14 @@
 
 pub mod bare;
 pub mod ideal;
+pub mod metal;
 pub mod mirror;
 
 use crate::optics::{Incidence, Split};
 
 pub use bare::Bare;
 pub use ideal::Ideal;
+pub use metal::Metal;
 pub use mirror::Mirror;
 
 /// What a surface does to the specular part of light.
@@ -17,4 +19,9 @@ pub trait Coating: Send + Sync + std::fmt::Debug {
 
     /// True where nothing is ever transmitted: a reflection there is what the designer meant, not a ghost.
     fn opaque(&self) -> bool;
+
+    /// True for an uncoated interface: it yields to a declared coating where two faces lie on each other.
+    fn bare(&self) -> bool {
+        false
+    }
 }

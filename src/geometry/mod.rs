@@ -1,11 +1,18 @@
 //! Points, directions, triangles, and the one question asked of them: what does this ray meet next?
 
-pub mod bvh;
+mod bvh;
+mod crossing;
 pub mod frame;
 pub mod mesh;
+mod nearest;
 pub mod ray;
+mod shear;
+mod tree;
 pub mod triangle;
+mod wide;
 
+pub use bvh::{Bvh, Facet};
+pub use crossing::{Crossing, Hit, Left, MOST_COINCIDENT};
 pub use frame::Frame;
 pub use ray::Ray;
 pub use triangle::Triangle;

@@ -6,7 +6,7 @@ pub mod tabulated;
 
 use num_complex::Complex64;
 
-pub use constant::Constant;
+pub use constant::{Constant, Loss};
 pub use sellmeier::Sellmeier;
 pub use tabulated::Tabulated;
 

@@ -1,5 +1,19 @@
 //! What an interface does to s and p light: flux-normalised complex amplitudes.
+//!
+//! The field is written in the frame (s, p = k x s, k) of the ray itself, before and after, time factor exp(-i omega t):
+//!
+//!     E_s' = a_s E_s,   E_p' = a_p E_p
+//!     I' = (R_s + R_p)/2 I + (R_s - R_p)/2 Q        R_s = |a_s|^2, R_p = |a_p|^2   power fractions
+//!     Q' = (R_s - R_p)/2 I + (R_s + R_p)/2 Q
+//!     U' + i V' = a_s conj(a_p) (U + i V)
+//!
+//! because U + i V = 2 E_s conj(E_p) ([`Stokes`]). As p turns over with k in a reflection, a mirror at normal incidence
+//! has a_p = -a_s: it changes the hand of circular light.
+//!
+//! Source: Born & Wolf, Principles of Optics, 7th ed., sec. 1.5.2; the Mueller matrix of a diagonal Jones matrix,
+//! Bohren & Huffman (1983), sec. 2.11.3.
 
+use super::Stokes;
 use num_complex::Complex64;
 
 /// Complex amplitudes for s and p, normalised to flux: |s|^2 is the power fraction R_s or T_s (T includes
@@ -13,16 +27,29 @@ pub struct Amplitudes {
 impl Amplitudes {
     pub const ZERO: Amplitudes = Amplitudes { s: Complex64::ZERO, p: Complex64::ZERO };
 
-    /// The same real amplitude for both: power fraction `power`, 0..1, no phase between s and p
-    /// other than that of the sign convention (`mirror` flips p, as an ideal mirror does).
+    /// Ideal transmission of power fraction `power`, 0..1: the same real amplitude for s and p, polarisation kept.
     pub fn ideal(power: f64) -> Amplitudes {
         let a = Complex64::new(power.sqrt(), 0.0);
         Amplitudes { s: a, p: a }
     }
 
+    /// Ideal reflection of power fraction `power`, 0..1: the perfect conductor's signs, a_s = -a, a_p = +a.
+    pub fn mirror(power: f64) -> Amplitudes {
+        let a = Complex64::new(power.sqrt(), 0.0);
+        Amplitudes { s: -a, p: a }
+    }
+
     /// Power fraction of unpolarised light, (|s|^2 + |p|^2) / 2, 0..1.
     pub fn unpolarised(&self) -> f64 {
         0.5 * (self.s.norm_sqr() + self.p.norm_sqr())
+    }
+
+    /// The light that leaves, W, for light (W) that arrives; both in their (s, k x s) frames.
+    pub fn apply(&self, light: Stokes) -> Stokes {
+        let (rs, rp) = (self.s.norm_sqr(), self.p.norm_sqr());
+        let (mean, half) = (0.5 * (rs + rp), 0.5 * (rs - rp));
+        let cross = self.s * self.p.conj() * Complex64::new(light.u, light.v);
+        Stokes { i: mean * light.i + half * light.q, q: half * light.i + mean * light.q, u: cross.re, v: cross.im }
     }
 }
 
@@ -31,4 +58,26 @@ impl Amplitudes {
 pub struct Split {
     pub reflected: Amplitudes,
     pub transmitted: Amplitudes,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::stokes::Hand;
+
+    #[test]
+    fn a_mirror_changes_the_hand_of_circular_light() {
+        let light = Stokes::circular(2.0, Hand::Right);
+        assert_eq!(Amplitudes::mirror(1.0).apply(light), Stokes::circular(2.0, Hand::Left));
+        assert_eq!(Amplitudes::ideal(1.0).apply(light), light);
+    }
+
+    #[test]
+    fn s_light_keeps_only_the_s_fraction() {
+        let a = Amplitudes { s: Complex64::new(0.0, 0.6), p: Complex64::new(0.2, 0.0) };
+        let s = a.apply(Stokes::linear(1.0, 0.0));
+        assert!((s.i - 0.36).abs() < 1e-15 && (s.q - 0.36).abs() < 1e-15);
+        let p = a.apply(Stokes::linear(1.0, std::f64::consts::FRAC_PI_2));
+        assert!((p.i - 0.04).abs() < 1e-15 && (p.q + 0.04).abs() < 1e-15);
+    }
 }

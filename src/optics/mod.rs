@@ -8,4 +8,4 @@ pub mod stokes;
 
 pub use amplitudes::{Amplitudes, Split};
 pub use incidence::Incidence;
-pub use stokes::Stokes;
+pub use stokes::{Hand, Stokes};

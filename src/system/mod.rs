@@ -1,6 +1,8 @@
 //! The system as written: RON document, glTF geometry, and the compiler that turns both into a scene.
 
+pub mod compile;
 pub mod document;
 pub mod gltf;
+pub mod schema;
 pub mod select;
 pub mod units;

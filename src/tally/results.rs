@@ -5,6 +5,8 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+pub use crate::detector::{Axis, MapKind};
+
 /// A mean over batches with its standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Estimate {
@@ -111,30 +113,6 @@ pub struct MapResult {
     pub side: &'static str,
 }
 
-/// How the bins lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MapKind {
-    /// Pixels on a plane.
-    Plane,
-    /// Rows: polar angle from the axis; columns: azimuth.
-    Polar,
-    /// Rows: rings of equal projected solid angle (sin^2 theta); columns: azimuth.
-    Projected,
-    /// One bin per triangle.
-    Triangles,
-}
-
-/// One axis of a map.
-#[derive(Clone, Debug)]
-pub struct Axis {
-    pub name: String,
-    /// "m" or "rad" or "sin2".
-    pub unit: &'static str,
-    /// Lower edge of bin 0.
-    pub start: f64,
-    pub step: f64,
-}
-
 /// Everything that depends only on system, seed and rays.
 #[derive(Clone, Debug, Serialize)]
 pub struct Results {
@@ -154,6 +132,8 @@ pub struct Results {
     /// Flux cut by cause ("roulette", "max_scatters", ...), W.
     pub terminated_w: BTreeMap<String, Estimate>,
     pub warnings: Vec<String>,
+    /// False if flux was lost beyond the limit or the ledger does not close: see `warnings`.
+    pub trusted: bool,
     /// SHA-256 of every file that was read, by name as written.
     pub inputs: BTreeMap<String, String>,
     /// Cells along each side of the grid on which a path's peak is given.

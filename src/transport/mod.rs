@@ -1,1 +1,168 @@
-//! (to come)
+//! Transport: batches of source rays over all cores, folded in a fixed order.
+
+pub mod book;
+mod film;
+mod interaction;
+pub mod paths;
+pub mod summary;
+pub mod walk;
+pub mod watch;
+
+use crate::math::rng::mix;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::tally::{Fold, Layout, Live, Sums};
+use book::Book;
+use paths::{Candidates, Rows};
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use walk::{Quota, Walk, quotas};
+use watch::Unwatched;
+
+/// Batches handed to the threads at a time: progress is reported, interruptions are seen and sums are folded in between.
+const CHUNK: u64 = 64;
+
+/// Everything a run counted.
+#[derive(Debug)]
+pub struct Counts<const V: usize> {
+    pub layout: Layout,
+    pub rows: Rows,
+    pub sums: Sums<V>,
+    pub batch_rays: u64,
+    /// Flights from event to event, pilot not included.
+    pub segments: u64,
+    /// True if it was told to stop.
+    pub interrupted: bool,
+}
+
+/// How far a run is.
+pub struct Progress<'a, const V: usize> {
+    pub batches: u64,
+    /// Of so many; fewer if the wanted precision is reached before.
+    pub of: u64,
+    pub batch_rays: u64,
+    pub layout: &'a Layout,
+    pub sums: &'a Sums<V>,
+}
+
+/// Traces `scene` on the current rayon pool. `progress` is called between chunks of batches; once `stop` is set the
+/// finished, contiguous batches are the result. The result does not depend on the number of threads.
+pub fn run<const V: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &dyn Fn(&Progress<V>),
+) -> Counts<V> {
+    let batch_rays = settings.batch_rays();
+    let quotas = quotas(scene, batch_rays);
+    let rows = pilot::<V>(scene, settings, &quotas, batch_rays, stop);
+    let layout = scene.layout(rows.rows.len());
+    let pool = Mutex::new(Vec::new());
+    let mut fold = Fold::default();
+    let (mut done, mut segments) = (0, 0);
+    let stages = stages(settings);
+    'stages: for &stage in &stages {
+        while done < stage {
+            let end = (done + CHUNK).min(stage);
+            let batches: Vec<u64> = (done..end).collect();
+            let chunk: Vec<_> = batches
+                .into_par_iter()
+                .with_max_len(1)
+                .map(|batch| {
+                    (!stop.load(Ordering::Relaxed))
+                        .then(|| one_batch(scene, settings, &layout, &rows, &quotas, &pool, batch))
+                })
+                .collect();
+            for finished in chunk {
+                let Some((sums, flights)) = finished else { break 'stages };
+                fold.push(sums);
+                segments += flights;
+                done += 1;
+            }
+            progress(&Progress {
+                batches: done,
+                of: settings.batches(),
+                batch_rays,
+                layout: &layout,
+                sums: &fold.total(),
+            });
+        }
+        if precise_enough(settings, &layout, &fold.total()) {
+            break;
+        }
+    }
+    let interrupted = stop.load(Ordering::Relaxed) && done < settings.batches();
+    Counts { layout, rows, sums: fold.total(), batch_rays, segments, interrupted }
+}
+
+/// Batch counts at which the precision is looked at: doublings only, so that looking does not bias the result.
+fn stages(settings: &Settings) -> Vec<u64> {
+    let all = settings.batches();
+    let doublings = (0..).map(|k| Settings::FEWEST_BATCHES << k).take_while(|&n| n < all);
+    let early: Vec<u64> = if settings.until.is_some() { doublings.collect() } else { Vec::new() };
+    early.into_iter().chain([all]).collect()
+}
+
+/// Fewest contributing source rays for which a wanted precision counts as reached.
+const FEWEST_RAYS: u64 = 100;
+
+fn precise_enough<const V: usize>(settings: &Settings, layout: &Layout, sums: &Sums<V>) -> bool {
+    settings.until.is_some_and(|until| {
+        let slot = layout.detector(until.detector);
+        let estimate = sums.estimate(slot, 0);
+        sums.rays(slot) >= FEWEST_RAYS && estimate.error <= until.relative * estimate.mean
+    })
+}
+
+fn one_batch<const V: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    layout: &Layout,
+    rows: &Rows,
+    quotas: &[Quota],
+    pool: &Mutex<Vec<Live<V>>>,
+    batch: u64,
+) -> (Sums<V>, u64) {
+    let idle = pool.lock().ok().and_then(|mut pool| pool.pop());
+    let live = idle.unwrap_or_else(|| Live::new(layout.len()));
+    let book = Book::new(layout, live, Some(rows));
+    let mut walk =
+        Walk { scene, settings, seed: settings.seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
+    walk.batch(batch, quotas);
+    let sums = walk.book.finish();
+    let segments = walk.book.segments;
+    if let Ok(mut pool) = pool.lock() {
+        pool.push(walk.book.live);
+    }
+    (sums, segments)
+}
+
+/// Chooses the rows of the path table with random numbers of their own: a sixteenth of the run, at most 2^20 rays.
+fn pilot<const V: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    quotas: &[Quota],
+    batch_rays: u64,
+    stop: &AtomicBool,
+) -> Rows {
+    if settings.paths == 0 {
+        return Rows::default();
+    }
+    let layout = scene.layout(0);
+    let rays = (settings.rays / 16).clamp(256, 1 << 20);
+    let batches = rays.div_ceil(batch_rays);
+    let seed = mix(settings.seed ^ 0x7069_6c6f_7421);
+    let seen: Vec<Candidates> = (0..batches)
+        .into_par_iter()
+        .map(|batch| {
+            let book = Book::new(&layout, Live::<V>::new(layout.len()), None);
+            let mut walk = Walk { scene, settings, seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
+            if !stop.load(Ordering::Relaxed) {
+                walk.batch(batch, quotas);
+            }
+            walk.book.candidates
+        })
+        .collect();
+    seen.into_iter().fold(Candidates::default(), Candidates::merge).admit(settings.paths)
+}

@@ -1,1 +1,241 @@
-//! (to come)
+//! The system document exactly as written: types, reading, and what can be checked without opening another file.
+//!
+//! [`Document::read`] reads a RON file into a [`System`] whose quantities are SI, and refuses it with *all* of its
+//! problems at once, each with line and column. [`Document::span`] finds the place of a path such as
+//! `surfaces[3].scatter` or `sources["sun"].extent`, so that later stages can point into the same text.
+
+mod check;
+mod coating;
+mod detector;
+mod entry;
+mod geometry;
+mod medium;
+mod names;
+mod read;
+mod run;
+mod scatter;
+mod source;
+mod surface;
+mod tree;
+
+pub use coating::{Coating, Specular};
+pub use detector::{Bins, Detector, Quantity, Receiver};
+pub use geometry::{Geometry, Up};
+pub use medium::Medium;
+pub use names::Names;
+pub use read::SECTIONS;
+pub use run::{Roulette, Run, Until};
+pub use scatter::{Scatter, ScatterSide};
+pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
+pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface};
+
+use crate::error::{Error, Problem, Span};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use tree::Node;
+
+/// Larger files are refused, bytes: a system is written by hand.
+const LARGEST: u64 = 64 << 20;
+
+/// An optical system as written, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct System {
+    /// What reports call it.
+    pub name: Option<String>,
+    /// Files with the shapes.
+    pub geometry: Vec<Geometry>,
+    /// The medium around everything: a name in `media`, or "vacuum".
+    pub ambient: String,
+    /// Media by name. "vacuum" is always there.
+    pub media: Names<Medium>,
+    /// Coatings by name.
+    pub coatings: Names<Coating>,
+    /// Scatter models by name.
+    pub scatter: Names<Scatter>,
+    /// What the triangles are; later entries override earlier ones, field by field.
+    pub surfaces: Vec<Surface>,
+    /// What triangles are that no entry selects.
+    pub default: Option<Finish>,
+    /// Light sources by name.
+    pub sources: Names<Source>,
+    /// Detectors by name.
+    pub detectors: Names<Detector>,
+    /// How it is traced.
+    pub run: Run,
+}
+
+/// A system and the text it was read from.
+#[derive(Debug, Clone)]
+pub struct Document {
+    /// The file.
+    pub path: PathBuf,
+    /// Its text, without byte-order mark.
+    pub text: String,
+    /// SHA-256 of its bytes, in lower-case hexadecimal.
+    pub sha256: String,
+    /// The system.
+    pub system: System,
+    /// What the author should look at, though it can be used.
+    pub warnings: Vec<Problem>,
+    tree: Node,
+    indices: Indices,
+}
+
+/// Which items of the lists could be read; all of them in a document that is accepted.
+#[derive(Debug, Clone, Default)]
+struct Indices {
+    geometry: Vec<usize>,
+    surfaces: Vec<usize>,
+}
+
+impl Document {
+    /// Reads a system file. Fails with all problems of the file at once, or if a file that it names is not there.
+    pub fn read(path: &Path) -> Result<Document, Error> {
+        let bytes = load(path)?;
+        let (document, mut problems) = Document::examine(path, &bytes)?;
+        let missing = document.missing_files();
+        let sound = !problems.iter().any(Problem::is_error);
+        if sound && !missing.is_empty() {
+            return Err(Error::Missing(missing));
+        }
+        let known: BTreeSet<String> = problems.iter().map(|problem| problem.path.clone()).collect();
+        problems.extend(missing.into_iter().filter(|problem| !known.contains(&problem.path)));
+        document.accepted(problems)
+    }
+
+    /// Reads a system from the bytes of a file. Opens no file.
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Document, Error> {
+        let (document, problems) = Document::examine(path, bytes)?;
+        document.accepted(problems)
+    }
+
+    /// The document if nothing is wrong with it.
+    fn accepted(mut self, problems: Vec<Problem>) -> Result<Document, Error> {
+        if problems.iter().any(Problem::is_error) {
+            return Err(Error::Input(problems));
+        }
+        self.warnings = problems;
+        Ok(self)
+    }
+
+    /// The document as far as it can be read, and its problems.
+    fn examine(path: &Path, bytes: &[u8]) -> Result<(Document, Vec<Problem>), Error> {
+        let refuse = |problem: Problem| Error::Input(vec![problem.in_file(path)]);
+        let text = std::str::from_utf8(bytes).map_err(|e| refuse(not_utf8(bytes, e.valid_up_to())))?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text).to_owned();
+        let tree = tree::read(&text).map_err(|fault| refuse(syntax(&text, &fault)))?;
+        let mut reader = read::Reader::new(&text);
+        let (system, indices) = reader.system(&tree);
+        let read::Reader { problems: mut found, mended, .. } = reader;
+        let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        let warnings = Vec::new();
+        let document = Document { path: path.to_path_buf(), text, sha256, system, warnings, tree, indices };
+        let checked = document.checked(found.is_empty());
+        found.extend(checked.into_iter().filter(|problem| !read::is_mended(&mended, problem)));
+        let problems = document.located(found);
+        Ok((document, problems))
+    }
+
+    /// What is wrong or doubtful about the system, in the order of the text: ranges, names, contradictions.
+    pub fn problems(&self) -> Vec<Problem> {
+        self.located(self.checked(true))
+    }
+
+    /// Problems of this file in the order of its text.
+    fn located(&self, mut problems: Vec<Problem>) -> Vec<Problem> {
+        problems.sort_by_key(|problem| problem.span);
+        problems.into_iter().map(|problem| problem.in_file(&self.path)).collect()
+    }
+
+    /// Where a path such as `surfaces[3].scatter` or `sources["sun"].extent.radius` stands in the text: the name of a
+    /// named entry, the value of anything else. If the path leads nowhere, the nearest thing on the way.
+    pub fn span(&self, path: &str) -> Option<Span> {
+        let steps = read::steps(path)?;
+        let found = (1..=steps.len()).rev().find_map(|n| {
+            let (last, way) = steps[..n].split_last()?;
+            let node = self.tree.find(way)?;
+            match last {
+                tree::Step::Name(name) if node.key(name).is_some() => node.key(name),
+                _ => self.tree.find(&steps[..n]),
+            }
+        })?;
+        Some(tree::place(&self.text, found.start, found.end))
+    }
+
+    /// A problem at a path of this document: file, place and path are filled in.
+    pub fn problem(&self, path: &str, problem: Problem) -> Problem {
+        problem.in_file(&self.path).at(self.span(path)).on(path)
+    }
+
+    /// The path of a file that the document names, which is relative to the document's own directory.
+    pub fn resolve(&self, file: &Path) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(file)
+    }
+
+    /// Files that the document names and that are not there.
+    fn missing_files(&self) -> Vec<Problem> {
+        let mut files: Vec<(String, &Path)> = Vec::new();
+        for (at, geometry) in self.indices.geometry.iter().zip(&self.system.geometry) {
+            files.push((format!("geometry[{at}].file"), &geometry.file));
+        }
+        for (name, scatter) in self.system.scatter.iter() {
+            tables(scatter, &format!("scatter[{name:?}]"), &mut files);
+        }
+        let missing = files.into_iter().filter(|(_, file)| !self.resolve(file).is_file());
+        missing.map(|(path, file)| self.problem(&path, no_file(file, &self.resolve(file)))).collect()
+    }
+}
+
+/// The tables that a scatter model reads, each with its path in the document.
+fn tables<'a>(scatter: &'a Scatter, path: &str, files: &mut Vec<(String, &'a Path)>) {
+    match scatter {
+        Scatter::Table { file, .. } => files.push((format!("{path}.file"), file)),
+        Scatter::Sum(parts) => {
+            parts.iter().enumerate().for_each(|(at, part)| tables(part, &format!("{path}[{at}]"), files));
+        }
+        Scatter::Lambertian { .. } | Scatter::ABg { .. } => {}
+    }
+}
+
+fn no_file(written: &Path, resolved: &Path) -> Problem {
+    let what = if resolved.exists() { "is not a file" } else { "does not exist" };
+    Problem::error(format!("{:?} {what}", written.display().to_string()))
+        .hinting("files are relative to the system file".to_owned())
+}
+
+/// The bytes of a file that the user named.
+fn load(path: &Path) -> Result<Vec<u8>, Error> {
+    let missing = |what: String| Error::Missing(vec![Problem::error(what).in_file(path)]);
+    if path.is_dir() {
+        return Err(missing("this is a directory; expected a system file".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|e| missing(format!("cannot be opened: {e}")))?;
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|e| missing(format!("cannot be read: {e}")))?;
+    if bytes.len() as u64 > LARGEST {
+        let problem = Problem::error(format!("this file is larger than {} MiB", LARGEST >> 20)).in_file(path);
+        return Err(Error::Input(vec![problem]));
+    }
+    Ok(bytes)
+}
+
+fn not_utf8(bytes: &[u8], valid: usize) -> Problem {
+    let before = String::from_utf8_lossy(&bytes[..valid]);
+    Problem::error("this is not UTF-8 text")
+        .at(tree::place(&before, before.len(), before.len()))
+        .expecting("a system written in RON")
+}
+
+fn syntax(text: &str, fault: &tree::Fault) -> Problem {
+    let bracket = fault.open.map(|open| {
+        let Span { line, column, .. } = tree::place(text, open, open + 1);
+        format!("inside the `{}` of line {line}, column {column}", &text[open..=open])
+    });
+    let problem = Problem::error(fault.message.clone()).at(tree::place(text, fault.at, fault.at + 1)).hinting(bracket);
+    match fault.expected {
+        Some(expected) => problem.expecting(expected),
+        None => problem,
+    }
+}

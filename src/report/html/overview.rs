@@ -1,0 +1,151 @@
+//! The first screen: what was found, and whether it can be trusted.
+
+use super::number::{estimate, limit, tone};
+use crate::report::digest::{self, SIGNAL, Verdict};
+use crate::report::measured::grouped;
+use crate::tally::results::{DetectorResult, Results, RunInfo};
+use maud::{Markup, html};
+
+pub fn overview(results: &Results, run: &RunInfo) -> Markup {
+    html! {
+        header {
+            p.overline { "Stray-light report" }
+            h1 { (results.system) }
+            (facts(results, run))
+            @if run.interrupted { p.interrupted { "Interrupted: this report holds the batches that were finished." } }
+        }
+        @for (index, (name, detector)) in results.detectors.iter().enumerate() { (card(index, name, detector)) }
+        (trust(results))
+    }
+}
+
+fn facts(results: &Results, run: &RunInfo) -> Markup {
+    let gap = "\u{202f}";
+    let rounded = results.rays != results.rays_requested && !run.interrupted;
+    html! {
+        dl.facts {
+            div { dt { "Source rays" } dd { (grouped(results.rays, gap))
+                @if rounded { small { " " (grouped(results.rays_requested, gap)) " requested, whole batches traced" } } } }
+            div { dt { "Batches" } dd { (grouped(results.batches, gap)) " × " (grouped(results.batch_rays, gap)) } }
+            div { dt { "Seed" } dd { (results.seed) } }
+            div { dt { "Time" } dd { (duration(run.seconds)) small { " on " (run.threads) " threads" } } }
+        }
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+fn card(index: usize, name: &str, detector: &DetectorResult) -> Markup {
+    html! {
+        section.card {
+            div.key {
+                h2 { a href=(format!("#detector-{index}")) { (name) } }
+                @if let Some(flux) = detector.upper_limit_w {
+                    p.total { (limit(flux, "W")) }
+                } @else {
+                    p.total { (estimate(detector.flux_w, "W")) }
+                }
+                p.label { "flux on the detector" }
+                (ratio(detector))
+            }
+            div.light {
+                (bar(detector))
+                (said(&digest::resolution(detector)))
+                @if detector.upper_limit_w.is_none() { (said(&digest::pixels(detector))) }
+            }
+        }
+    }
+}
+
+/// Stray against signal, in one line.
+fn ratio(detector: &DetectorResult) -> Markup {
+    let stray = digest::stray(detector);
+    html! {
+        @if detector.upper_limit_w.is_none() {
+            dl.ratio {
+                @if let Some(signal) = detector.classes.get(SIGNAL) { div { dt { "Signal" } dd { (estimate(*signal, "W")) } } }
+                div { dt { "Stray" } dd { (estimate(stray, "W")) } }
+                @if let Some(ratio) = digest::stray_to_signal(detector) {
+                    div.strong { dt { "Stray / signal" } dd { (estimate(ratio, "")) } }
+                }
+            }
+        }
+    }
+}
+
+/// Signal and stray as one bar; below it stray light alone, drawn to full width, by class.
+fn bar(detector: &DetectorResult) -> Markup {
+    let classes = digest::classes(detector);
+    let stray = digest::stray(detector).mean;
+    let total: f64 = classes.iter().map(|class| class.1.mean.max(0.0)).sum();
+    let enlarged = total > 0.0 && stray > 0.0 && stray < 0.5 * total;
+    html! {
+        @if total > 0.0 {
+            figure.bar {
+                (strip(&classes, total, |_| true))
+                @if enlarged {
+                    (funnel(100.0 * (1.0 - stray / total)))
+                    (strip(&classes, stray, |class| class != SIGNAL))
+                }
+                figcaption {
+                    @if enlarged { p.note { "Lower strip: stray light alone, × " (crate::report::measured::measured(rounded(total / stray), 0.0)) "." } }
+                    ul.legend {
+                        @for (class, _, share) in &classes {
+                            li { span.swatch style=(format!("background:{}", tone(class))) {} (class) " " span.share { (share) " %" } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+type Class<'a> = (&'a str, crate::tally::results::Estimate, String);
+
+fn strip(classes: &[Class], whole: f64, shown: impl Fn(&str) -> bool) -> Markup {
+    html! {
+        div.strip {
+            @for (class, flux, share) in classes.iter().filter(|class| shown(class.0) && class.1.mean > 0.0) {
+                span style=(format!("width:{:.4}%;background:{}", 100.0 * flux.mean / whole, tone(class))) title=(format!("{class}: {share} %")) {}
+            }
+        }
+    }
+}
+
+/// From the stray end of the upper strip to the whole lower one; `from` in % of the width.
+fn funnel(from: f64) -> Markup {
+    html! {
+        svg.funnel viewBox="0 0 100 10" preserveAspectRatio="none" aria-hidden="true" {
+            path d=(format!("M{:.3} 0 L100 0 L100 10 L0 10 Z", from.min(99.7))) {}
+        }
+    }
+}
+
+/// What holds for the whole run.
+fn trust(results: &Results) -> Markup {
+    let warnings = results.warnings.len();
+    html! {
+        div.trust {
+            (said(&digest::closure(&results.ledger_w)))
+            (said(&digest::losses(&results.ledger_w)))
+            @if warnings > 0 {
+                p.verdict.bad { a href="#warnings" { (warnings) @if warnings == 1 { " warning" } @else { " warnings" } } " to read." }
+            }
+            p.verdict.plain { "Errors are one standard error of the mean over " (results.batches) " batches; for sums of classes and their ratios, an upper bound." }
+        }
+    }
+}
+
+pub fn said(verdict: &Verdict) -> Markup {
+    html! { p.verdict.good[verdict.good].bad[!verdict.good] { (verdict.text) } }
+}

@@ -1,0 +1,84 @@
+//! The paths by which light reached a detector, strongest first.
+
+use super::number::{estimate, plain, tone};
+use crate::report::digest;
+use crate::report::measured::grouped;
+use crate::tally::results::{PathResult, Results};
+use maud::{Markup, html};
+
+/// Rows per detector; all are in paths.csv.
+const ROWS: usize = 25;
+
+pub fn table(results: &Results, detector: &str) -> Markup {
+    let strongest = digest::strongest(results, detector, ROWS);
+    html! {
+        @if !strongest.rows.is_empty() {
+            h3 { "Strongest paths" }
+            table.paths {
+                thead { tr {
+                    th {} th { "Class" } th.right { "Flux" } th.right { "Share" } th.right { "Rays" } th.right { "Optical path" }
+                    th.right { "Peak" }
+                } }
+                @for (index, (path, share)) in strongest.rows.iter().enumerate() { (row(index + 1, path, share)) }
+                tbody {
+                    @if let Some((flux, share, sequences)) = &strongest.other {
+                        tr { td {} td { "other" } td.right { (estimate(*flux, "W")) } td.right { (share) " %" } td colspan="3" {} }
+                        tr.sequence { td {} td colspan="6" {
+                            @if *sequences > 0 { (sequences) " more sequences are in paths.csv. " }
+                            "The error is an upper bound: the sum of the errors."
+                        } }
+                    }
+                }
+                tfoot { tr { th {} th { "All paths" } td.right { (total(results, detector)) } td.right { "100 %" } td colspan="3" {} } }
+            }
+            p.note { "Events: " b.event.t { "T" } " transmitted, " b.event.r { "R" } " reflected, " b.event.s { "S" } " scattered, "
+                b.event.a { "A" } " absorbed. Peak: largest irradiance on a grid of " (results.path_grid) " × " (results.path_grid)
+                " cells. Rays: source rays that contributed." }
+        }
+    }
+}
+
+fn total(results: &Results, detector: &str) -> Markup {
+    html! { @if let Some(detector) = results.detectors.get(detector) { (estimate(detector.flux_w, "W")) } }
+}
+
+fn row(rank: usize, path: &PathResult, share: &str) -> Markup {
+    html! {
+        tbody {
+            tr {
+                td.rank { (rank) }
+                td { span.swatch style=(format!("background:{}", tone(&path.class))) {} (path.class) }
+                td.right { (estimate(path.flux_w, "W")) }
+                td.right { (share) " %" }
+                td.right { (grouped(path.rays, "\u{202f}")) @if path.rays < 30 { span.few title="fewer than 30 source rays: not resolved" { " !" } } }
+                td.right { (plain(1e3 * path.optical_path_m, "mm")) }
+                td.right { (plain(path.peak_w_m2, "W/m2")) }
+            }
+            tr.sequence { td {} td colspan="6" { (sequence(&path.sequence)) } }
+        }
+    }
+}
+
+/// Surfaces with their events, in the order of the light.
+fn sequence(text: &str) -> Markup {
+    html! {
+        @for (index, step) in text.split(" > ").enumerate() {
+            @if index > 0 { span.then { " › " } }
+            span.step {
+                @match step.rsplit_once(':') {
+                    Some((surface, event)) => { (surface) " " b class=(format!("event {}", kind(event))) { (event) } },
+                    None => { (step) },
+                }
+            }
+        }
+    }
+}
+
+fn kind(event: &str) -> &'static str {
+    match event.chars().next() {
+        Some('T') => "t",
+        Some('R') => "r",
+        Some('S') => "s",
+        _ => "a",
+    }
+}

@@ -1,0 +1,148 @@
+//! The result for the terminal: plain lines, no colour, no width assumed.
+
+use super::digest::{self, Verdict};
+use super::measured::{below, grouped, measured};
+use crate::tally::results::{DetectorResult, Estimate, Results, RunInfo};
+use std::fmt::{self, Write};
+
+/// Paths listed per detector.
+const PATHS: usize = 10;
+
+/// Widest path on one line.
+const SEQUENCE: usize = 100;
+
+/// Key numbers with errors (one sigma), classes, the strongest paths, the ledger, warnings. Ends with a newline.
+#[must_use]
+pub fn text(results: &Results, run: &RunInfo) -> String {
+    let mut out = String::new();
+    // Writing into a String cannot fail.
+    let _ = whole(&mut out, results, run);
+    out
+}
+
+fn whole(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
+    heading(out, results, run)?;
+    for (name, detector) in &results.detectors {
+        key_numbers(out, name, detector)?;
+        paths(out, results, name)?;
+    }
+    ledger(out, results)?;
+    for warning in &results.warnings {
+        writeln!(out, "warning: {warning}")?;
+    }
+    Ok(())
+}
+
+fn heading(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
+    let rays = grouped(results.rays, " ");
+    writeln!(out, "{}", results.system)?;
+    write!(out, "{rays} source rays in {} batches, seed {}", results.batches, results.seed)?;
+    if results.rays != results.rays_requested {
+        write!(out, " ({} requested)", grouped(results.rays_requested, " "))?;
+    }
+    writeln!(out, "; {:.1} s on {} threads", run.seconds, run.threads)?;
+    if run.interrupted {
+        writeln!(out, "interrupted: what was finished is below")?;
+    }
+    writeln!(out, "errors are one standard error of the mean")
+}
+
+fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult) -> fmt::Result {
+    let flux = match detector.upper_limit_w {
+        Some(limit) => below(limit),
+        None => estimate(detector.flux_w),
+    };
+    writeln!(out, "\n{name}: {flux} W")?;
+    said(out, digest::resolution(detector))?;
+    if detector.upper_limit_w.is_some() {
+        return Ok(());
+    }
+    said(out, digest::pixels(detector))?;
+    let [row, column] = detector.peak_w_m2.pixel;
+    let peak = measured(detector.peak_w_m2.mean, detector.peak_w_m2.error);
+    writeln!(
+        out,
+        "  brightest bin: {peak} {} at row {row}, column {column} (a maximum is biased upward)",
+        detector.unit
+    )?;
+    if let Some(ratio) = digest::stray_to_signal(detector) {
+        writeln!(out, "  stray / signal: {} (error: upper bound)", estimate(ratio))?;
+    }
+    for (class, flux, share) in digest::classes(detector) {
+        writeln!(out, "  {class:<14} {:>26} W {share:>12} %", estimate(flux))?;
+    }
+    Ok(())
+}
+
+fn paths(out: &mut String, results: &Results, detector: &str) -> fmt::Result {
+    let strongest = digest::strongest(results, detector, PATHS);
+    if strongest.rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "  strongest paths:")?;
+    for (path, share) in &strongest.rows {
+        writeln!(out, "  {share:>12} % {:>26} W  {}", estimate(path.flux_w), shortened(&path.sequence))?;
+    }
+    if let Some((flux, share, sequences)) = &strongest.other {
+        writeln!(
+            out,
+            "  {share:>12} % {:>26} W  other ({sequences} of them in paths.csv; error: upper bound)",
+            estimate(*flux)
+        )?;
+    }
+    Ok(())
+}
+
+fn ledger(out: &mut String, results: &Results) -> fmt::Result {
+    writeln!(out, "\nledger: {} W emitted", estimate(results.ledger_w.emitted))?;
+    for (name, what, flux, share) in digest::ledger(&results.ledger_w) {
+        writeln!(out, "  {name:<14} {:>26} W {share:>12} %  {what}", estimate(flux))?;
+    }
+    said(out, digest::closure(&results.ledger_w))?;
+    said(out, digest::losses(&results.ledger_w))
+}
+
+fn said(out: &mut String, verdict: Verdict) -> fmt::Result {
+    writeln!(out, "  {}{}", if verdict.good { "" } else { "! " }, verdict.text.replace('\u{202f}', " "))
+}
+
+fn estimate(value: Estimate) -> String {
+    measured(value.mean, value.error)
+}
+
+/// A long path with its runs of transmissions counted instead of named, and cut if it is still too long.
+fn shortened(sequence: &str) -> String {
+    if sequence.chars().count() <= SEQUENCE {
+        return sequence.into();
+    }
+    let mut steps: Vec<String> = Vec::new();
+    let mut through = 0;
+    for step in sequence.split(" > ") {
+        if step.ends_with(":T") {
+            through += 1;
+            continue;
+        }
+        steps.extend((through > 0).then(|| format!("({through} T)")));
+        through = 0;
+        steps.push(step.into());
+    }
+    steps.extend((through > 0).then(|| format!("({through} T)")));
+    let counted = steps.join(" > ");
+    if counted.chars().count() <= SEQUENCE {
+        return counted;
+    }
+    format!("{} ...", counted.chars().take(SEQUENCE - 4).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_path_keeps_what_makes_it_stray() {
+        let lenses = "Lens_with_a_long_name.front:T > Lens_with_a_long_name.back:T".to_owned();
+        let path = format!("sun > {lenses} > {lenses} > Barrel:S > {lenses} > Detector");
+        assert_eq!(shortened(&path), "sun > (4 T) > Barrel:S > (2 T) > Detector");
+        assert_eq!(shortened("sun > Lens:T > Detector"), "sun > Lens:T > Detector");
+    }
+}

@@ -1,0 +1,56 @@
+//! Which way light starts, about the local z axis.
+
+use crate::geometry::Frame;
+use crate::math::sampling;
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// The shape of a beam. `Some(frame)`: its axis is fixed in space; `None`: the normal of the place it starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Angular {
+    pub axis: Option<Frame>,
+    pub pattern: Pattern,
+}
+
+/// Patterns; flux per solid angle about z.
+#[derive(Clone, Copy, Debug)]
+pub enum Pattern {
+    /// All along z.
+    Collimated,
+    /// Uniform in solid angle within `half_angle` (rad, <= pi): constant intensity.
+    Cone { half_angle: f64 },
+    /// Uniform radiance within `half_angle` (rad, <= pi/2) of z on a surface perpendicular to z: flux ~ cos theta dw.
+    /// pi/2 is a Lambertian source; half of 0.533 deg is the Sun.
+    Radiance { half_angle: f64 },
+    /// Intensity ~ exp(-2 tan^2 theta / tan^2 half_angle): Gaussian in the direction tangents.
+    Gaussian { half_angle: f64 },
+}
+
+impl Angular {
+    /// The fixed frame, if any.
+    pub fn frame(&self) -> Option<Frame> {
+        self.axis
+    }
+
+    /// Local unit direction at two coordinates in [0, 1).
+    pub fn direction(&self, [u, v]: [f64; 2]) -> DVec3 {
+        let about = |sine: f64, cosine: f64| DVec3::new(sine * (TAU * v).cos(), sine * (TAU * v).sin(), cosine);
+        match self.pattern {
+            Pattern::Collimated => DVec3::Z,
+            Pattern::Cone { half_angle } => {
+                // 1 - cos theta = 2 sin^2(theta / 2), free of cancellation for narrow cones.
+                let versine = 2.0 * (0.5 * half_angle).sin().powi(2) * u;
+                about((versine * (2.0 - versine)).max(0.0).sqrt(), 1.0 - versine)
+            }
+            Pattern::Radiance { half_angle } => {
+                let place = half_angle.sin() * sampling::disc([u, v]);
+                DVec3::new(place.x, place.y, (1.0 - place.length_squared()).max(0.0).sqrt())
+            }
+            Pattern::Gaussian { half_angle } => {
+                let tangent = half_angle.tan() * (-0.5 * (1.0 - u).ln()).sqrt();
+                let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+                about(tangent * cosine, cosine)
+            }
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! Which triangle is what: entries are laid over each other in order, and every distinct outcome on a node is a part.
+
+use super::Shop;
+use super::assembly::Assembly;
+use super::models::Finish;
+use crate::error::Problem;
+use crate::scene::{Filling, Part, PartKind, Solid};
+use crate::surface::Surface;
+use crate::system::document as written;
+use crate::system::select::{self, Selector};
+use std::collections::HashMap;
+
+/// Parts, their surfaces, and the solids they bound.
+#[derive(Debug, Default)]
+pub struct Assigned {
+    pub parts: Vec<Part>,
+    pub surfaces: Vec<Surface>,
+    pub solids: Vec<Solid>,
+}
+
+/// Entries that apply to a triangle, in order.
+type Layers = Vec<u16>;
+
+/// Assigns every triangle to a part.
+pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling]) -> Assigned {
+    let (layers, states) = lay(shop, assembly);
+    let mut assigned = Assigned::default();
+    let mut finishes: Vec<Finish> = Vec::new();
+    for node in 0..assembly.nodes.len() {
+        let first = assembly.first[node] as usize;
+        let range = first..first + assembly.nodes[node].mesh.triangles.len();
+        let mut found: Vec<u32> = layers[range.clone()].to_vec();
+        found.sort_unstable();
+        found.dedup();
+        let solid = solid(shop, assembly, node, &found, &states, media, &mut assigned.solids);
+        let names = names(shop, &assembly.nodes[node].name, &found, &states);
+        for (state, label) in found.iter().zip(names) {
+            let index = assigned.parts.len() as u32;
+            let entries = &states[*state as usize];
+            let part = part(shop, assembly, node, entries, label, solid, media, &mut finishes, &mut assigned.surfaces);
+            assigned.parts.push(part);
+            if entries.is_empty() {
+                assembly.unsaid.push(index);
+            }
+            for triangle in range.clone().filter(|&t| layers[t] == *state) {
+                assembly.part_of[triangle] = index;
+            }
+        }
+    }
+    assigned
+}
+
+/// The state (list of entries) of every triangle, and what the states are.
+fn lay(shop: &mut Shop, assembly: &Assembly) -> (Vec<u32>, Vec<Layers>) {
+    let mut layers = vec![0u32; assembly.part_of.len()];
+    let mut states: Vec<Layers> = vec![Vec::new()];
+    for (entry, written) in shop.document.system.surfaces.iter().enumerate() {
+        let mut next: HashMap<u32, u32> = HashMap::new();
+        let selector = selector(&written.on, assembly);
+        let picked = select::select(&selector, &assembly.nodes);
+        for picked in &picked {
+            for triangle in &picked.triangles {
+                let slot = &mut layers[(assembly.first[picked.node] + triangle) as usize];
+                *slot = *next.entry(*slot).or_insert_with(|| {
+                    let mut longer = states[*slot as usize].clone();
+                    longer.push(entry as u16);
+                    states.push(longer);
+                    states.len() as u32 - 1
+                });
+            }
+        }
+        if picked.is_empty() {
+            nothing(shop, entry, &written.on, assembly);
+        }
+    }
+    (layers, states)
+}
+
+/// An entry that selects nothing is a mistake.
+fn nothing(shop: &mut Shop, entry: usize, on: &written::Selector, assembly: &Assembly) {
+    let path = format!("surfaces[{entry}].on");
+    match on {
+        written::Selector::Node(glob) => shop.nothing_matches(&path, glob, &assembly.names()),
+        written::Selector::Faces { of, .. } if assembly.matching(of).is_empty() => {
+            shop.nothing_matches(&path, of, &assembly.names())
+        }
+        written::Selector::Tag(glob) => {
+            let mut tags: Vec<String> = assembly.nodes.iter().flat_map(|node| node.tags.clone()).collect();
+            tags.sort();
+            tags.dedup();
+            let expected = format!("one of the tags {}", super::listed(&tags));
+            shop.fault(&path, Problem::error(format!("no tag matches `{glob}`")).expecting(expected));
+        }
+        _ => {
+            let hint = "`straylight check` lists nodes, tags and faces";
+            shop.fault(&path, Problem::error("this selects no triangle").hinting(hint.to_owned()));
+        }
+    }
+}
+
+/// Labels of a node's parts: the node's name, with the name of the last named entry where there are several.
+fn names(shop: &Shop, node: &str, found: &[u32], states: &[Layers]) -> Vec<String> {
+    let surfaces = &shop.document.system.surfaces;
+    let named = |state: &u32| {
+        let entries = states[*state as usize].iter().rev();
+        entries.filter_map(|&entry| surfaces[entry as usize].name.clone()).next()
+    };
+    let mut labels: Vec<String> = Vec::new();
+    for state in found {
+        let base = match named(state) {
+            Some(name) => format!("{node}.{name}"),
+            None => node.to_string(),
+        };
+        let mut label = base.clone();
+        let mut number = 2;
+        while labels.contains(&label) {
+            label = format!("{base}.{number}");
+            number += 1;
+        }
+        labels.push(label);
+    }
+    labels
+}
+
+/// The last value that any of the entries gives.
+fn last<T>(shop: &Shop, entries: &[u16], field: impl Fn(&written::Surface) -> Option<T>) -> Option<T> {
+    entries.iter().rev().find_map(|&entry| field(&shop.document.system.surfaces[entry as usize]))
+}
+
+/// The solid that a node is, if its entries give it a medium.
+fn solid(
+    shop: &mut Shop,
+    assembly: &mut Assembly,
+    node: usize,
+    found: &[u32],
+    states: &[Layers],
+    media: &[Filling],
+    solids: &mut Vec<Solid>,
+) -> Option<u16> {
+    let named = |state: &u32| last(shop, &states[*state as usize], |s| s.medium.clone());
+    let mut names: Vec<Option<String>> = found.iter().map(named).collect();
+    names.sort();
+    names.dedup();
+    let name = names.iter().flatten().next()?.clone();
+    let label = assembly.nodes[node].name.clone();
+    let entry = found.iter().flat_map(|&s| &states[s as usize]).copied().max().unwrap_or(0);
+    let path = format!("surfaces[{entry}]");
+    if names.len() > 1 {
+        let problem = Problem::error(format!("only some faces of `{label}` have the medium `{name}`"));
+        shop.fault(
+            &path,
+            problem.expecting("one medium for the whole node: give it with Node or Tag, the finish with Faces"),
+        );
+        return None;
+    }
+    let topology = assembly.nodes[node].mesh.topology;
+    if !topology.closed() {
+        let problem = Problem::error(format!(
+            "`{label}` has a medium but is not closed: {} open and {} twisted edges",
+            topology.open_edges, topology.twisted_edges
+        ));
+        shop.fault(&path, problem.hinting("repair the mesh, or declare the sheet with `between: (..)`".to_owned()));
+        return None;
+    }
+    if topology.inverted() {
+        let mesh = &mut assembly.nodes[node].mesh;
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        mesh.topology.volume = -mesh.topology.volume;
+        shop.fault(&path, Problem::warning(format!("`{label}` is inside out; its faces were turned over")));
+    }
+    let medium = media.iter().position(|filling| filling.label == name)? as u16;
+    let priority = found.iter().find_map(|&s| last(shop, &states[s as usize], |s| s.priority)).unwrap_or(0);
+    assembly.solid_nodes.push(node);
+    solids.push(Solid { label, medium, priority, volume: topology.volume.abs() });
+    Some(solids.len() as u16 - 1)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn part(
+    shop: &mut Shop,
+    assembly: &Assembly,
+    node: usize,
+    entries: &[u16],
+    label: String,
+    solid: Option<u16>,
+    media: &[Filling],
+    finishes: &mut Vec<Finish>,
+    surfaces: &mut Vec<Surface>,
+) -> Part {
+    let between = last(shop, entries, |s| s.between.clone());
+    let medium = |name: &str| media.iter().position(|filling| filling.label == name).unwrap_or(0) as u16;
+    let kind = match (solid, between) {
+        (Some(solid), _) => PartKind::Face(solid),
+        (None, Some((front, back))) => PartKind::Between { front: medium(&front), back: medium(&back) },
+        (None, None) => PartKind::Sheet,
+    };
+    let transparent = kind != PartKind::Sheet;
+    let mut side = |front: bool| {
+        let finish = finish(shop, entries, front, transparent);
+        if finish.is_unsaid() {
+            unassigned(shop, assembly, node, &label);
+        }
+        let known = finishes.iter().position(|known| *known == finish);
+        known.unwrap_or_else(|| {
+            surfaces.push(finish.surface(shop));
+            finishes.push(finish);
+            finishes.len() - 1
+        }) as u32
+    };
+    let surface = vec![[side(true), side(false)]];
+    let air_gap = last(shop, entries, |s| s.gap) == Some(written::Gap::Air);
+    Part { label, surface, kind, detectors: Vec::new(), air_gap }
+}
+
+/// What one side of a part is: its entries over each other, or the default. A side that entries leave out because they
+/// are for the other one absorbs. A face of glass about which nothing is said is bare.
+fn finish(shop: &Shop, entries: &[u16], front: bool, transparent: bool) -> Finish {
+    let mut finish = Finish::default();
+    let mut one_sided = false;
+    for &entry in entries {
+        let written = &shop.document.system.surfaces[entry as usize];
+        if !acts(written.side, front) {
+            one_sided = true;
+            continue;
+        }
+        if written.specular.is_some() || written.coating.is_some() {
+            (finish.specular, finish.coating) = (written.specular, written.coating.clone());
+        }
+        finish.scatter = written.scatter.clone().or(finish.scatter);
+        finish.order = written.order.unwrap_or(finish.order);
+        finish.scattering = written.scattering.unwrap_or(finish.scattering);
+    }
+    if finish.is_unsaid() && !transparent {
+        let default = shop.document.system.default.as_ref();
+        if one_sided || default.is_some_and(|default| !acts(default.side, front)) {
+            finish.specular = Some(written::Specular::Absorb);
+        } else if let Some(default) = default {
+            finish.specular = default.specular;
+            finish.coating = default.coating.clone();
+            finish.scatter = default.scatter.clone();
+            finish.order = default.order.unwrap_or_default();
+            finish.scattering = default.scattering.unwrap_or_default();
+        }
+    }
+    if transparent && finish.specular.is_none() && finish.coating.is_none() {
+        finish.specular = Some(written::Specular::Fresnel);
+    }
+    finish
+}
+
+/// Whether an entry is about the front (`true`) or the back.
+fn acts(side: Option<written::Side>, front: bool) -> bool {
+    match side.unwrap_or_default() {
+        written::Side::Both => true,
+        written::Side::Front => front,
+        written::Side::Back => !front,
+    }
+}
+
+fn unassigned(shop: &mut Shop, assembly: &Assembly, node: usize, label: &str) {
+    let tags: Vec<&str> = assembly.nodes[node].tags.iter().map(String::as_str).filter(|tag| !tag.is_empty()).collect();
+    let tagged = if tags.is_empty() { String::new() } else { format!(" (tag {})", tags.join(", ")) };
+    let problem = Problem::error(format!("`{label}`{tagged} has no surface"))
+        .expecting("an entry in `surfaces` that says `specular`, `coating` or `scatter` for it, or a `default`");
+    let already = shop.problems.iter().any(|known| known.message == problem.message);
+    if !already {
+        shop.fault("surfaces", problem);
+    }
+}
+
+/// The selector in scene coordinates.
+fn selector(written: &written::Selector, assembly: &Assembly) -> Selector {
+    match written {
+        written::Selector::Tag(glob) => Selector::Tag(glob.clone()),
+        written::Selector::Node(glob) => Selector::Node(glob.clone()),
+        written::Selector::Extras { key, value } => Selector::Extras {
+            key: key.clone(),
+            value: match value {
+                written::ExtrasValue::Text(text) => text.clone(),
+                written::ExtrasValue::Number(number) => number.to_string(),
+                written::ExtrasValue::Flag(flag) => flag.to_string(),
+            },
+        },
+        written::Selector::Faces { of, predicate } => {
+            let (predicate, smooth) = predicate_of(predicate, assembly);
+            Selector::Faces { of: of.clone(), predicate, smooth }
+        }
+        written::Selector::Any(all) => Selector::Any(all.iter().map(|one| selector(one, assembly)).collect()),
+    }
+}
+
+/// A predicate in scene coordinates and the angle (rad) up to which neighbours belong to one face.
+fn predicate_of(written: &written::Predicate, assembly: &Assembly) -> (select::Predicate, f64) {
+    const SMOOTH: f64 = 20.0 / 180.0 * std::f64::consts::PI;
+    match written {
+        written::Predicate::Radial { axis, through, within } => {
+            let through = Some(through.0 - assembly.shift);
+            (select::Predicate::Radial { axis: axis.0, through, within: within.0 }, SMOOTH)
+        }
+        written::Predicate::Normal { direction, within } => {
+            (select::Predicate::Normal { direction: direction.0, within: within.0 }, SMOOTH)
+        }
+        written::Predicate::Box { min, max } => {
+            (select::Predicate::Box { min: min.0 - assembly.shift, max: max.0 - assembly.shift }, SMOOTH)
+        }
+        written::Predicate::Nearest { point, smooth } => {
+            (select::Predicate::Nearest { point: point.0 - assembly.shift }, smooth.0)
+        }
+        written::Predicate::All(all) => {
+            let all: Vec<_> = all.iter().map(|one| predicate_of(one, assembly)).collect();
+            let smooth = all.iter().map(|one| one.1).fold(SMOOTH, f64::min);
+            (select::Predicate::All(all.into_iter().map(|one| one.0).collect()), smooth)
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The compiler: from the document and its geometry to a scene. All problems at once, not the first.
+
+mod assembly;
+mod assign;
+mod lights;
+mod models;
+mod receivers;
+pub mod understanding;
+
+use super::document::Document;
+use crate::error::{Error, Problem, Severity, did_you_mean};
+use crate::geometry::Bvh;
+use crate::scene::{Part, PartKind, Scene};
+use crate::settings::{Roulette, Settings, Until};
+use assembly::Assembly;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+pub use understanding::Understanding;
+
+/// A system ready to be traced.
+#[derive(Debug)]
+pub struct Compiled {
+    pub scene: Scene,
+    pub settings: Settings,
+    pub warnings: Vec<Problem>,
+    /// SHA-256 of every file that was read, by name as written.
+    pub inputs: BTreeMap<String, String>,
+}
+
+/// The workshop: the document, and what is found wrong on the way.
+pub struct Shop<'a> {
+    pub document: &'a Document,
+    pub problems: Vec<Problem>,
+    pub inputs: BTreeMap<String, String>,
+}
+
+impl Shop<'_> {
+    /// Notes a problem at a path of the document.
+    pub fn fault(&mut self, path: &str, problem: Problem) {
+        self.problems.push(self.document.problem(path, problem));
+    }
+
+    /// Notes a file that was read.
+    pub fn input(&mut self, name: &str, bytes: &[u8]) {
+        let hash = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        self.inputs.insert(name.into(), hash);
+    }
+
+    /// A glob that selects nothing.
+    pub fn nothing_matches(&mut self, path: &str, glob: &str, names: &[String]) {
+        let problem = Problem::error(format!("no node matches `{glob}`"));
+        let problem = match did_you_mean(glob, names.iter().map(String::as_str)) {
+            Some(name) => problem.hinting(format!("did you mean `{name}`?")),
+            None => problem.expecting(format!("one of {}", listed(names))),
+        };
+        self.fault(path, problem);
+    }
+}
+
+/// At most eight names of a list.
+pub fn listed(names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(8).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > 8 { format!(" and {} more", names.len() - 8) } else { String::new() };
+    shown.join(", ") + &more
+}
+
+/// Compiles a document; reads the geometry and tables that it names.
+pub fn compile(document: &Document) -> Result<Compiled, Error> {
+    Ok(build(document)?.0)
+}
+
+/// Compiles a document and says what was understood of it.
+pub fn understand(document: &Document) -> Result<(Compiled, Understanding), Error> {
+    let (compiled, assembly) = build(document)?;
+    let understanding = understanding::understand(&compiled.scene, &assembly, &compiled.settings);
+    Ok((compiled, understanding))
+}
+
+fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
+    let mut shop = Shop { document, problems: document.warnings.clone(), inputs: BTreeMap::new() };
+    let system_file = document.path.file_name().map_or("system".into(), |name| name.to_string_lossy().into_owned());
+    shop.inputs.insert(system_file, document.sha256.clone());
+    let mut assembly = assembly::read(&mut shop);
+    let media = models::media(&mut shop);
+    let assigned = assign::assign(&mut shop, &mut assembly, &media);
+    let watched = receivers::detectors(&mut shop, &assembly);
+    let sources = lights::sources(&mut shop, &assembly);
+    if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
+        shop.fault("sources", Problem::error("nothing shines").expecting("at least one source"));
+    }
+    let mut parts: Vec<Part> = assigned.parts;
+    let mut detectors = Vec::new();
+    for (index, (detector, on)) in watched.into_iter().enumerate() {
+        on.into_iter().for_each(|part| parts[part].detectors.push(index as u16));
+        detectors.push(detector);
+    }
+    let has_optics = parts.iter().any(|part| {
+        let acts = |surface: u32| assigned.surfaces[surface as usize].optical();
+        part.surface.iter().flatten().any(|&surface| acts(surface))
+    });
+    let facets = assembly.facets();
+    let scene = Scene {
+        name: document.system.name.clone().unwrap_or_else(|| stem(document)),
+        geometry: Bvh::build(&facets),
+        part_of: assembly.part_of.clone(),
+        parts,
+        surfaces: assigned.surfaces,
+        ambient: models::ambient(document),
+        media,
+        solids: assigned.solids,
+        sources,
+        detectors,
+        shift: assembly.shift,
+        has_optics,
+    };
+    let settings = settings(document);
+    shop.problems.extend(understanding::doubts(&scene, &assembly, document));
+    let Shop { problems, inputs, .. } = shop;
+    if problems.iter().any(|problem| problem.severity == Severity::Error) {
+        return Err(Error::Input(problems));
+    }
+    Ok((Compiled { scene, settings, warnings: problems, inputs }, assembly))
+}
+
+fn stem(document: &Document) -> String {
+    let folder = document.path.parent().and_then(|folder| folder.file_name());
+    folder.or(document.path.file_stem()).map_or("system".into(), |name| name.to_string_lossy().into_owned())
+}
+
+fn settings(document: &Document) -> Settings {
+    let run = &document.system.run;
+    let default = Settings::default();
+    Settings {
+        rays: run.rays,
+        seed: run.seed,
+        batch: run.batch,
+        splits: run.splits as u16,
+        scatter_splits: run.scatter_splits as u16,
+        roulette: Roulette { below: run.roulette.below, survive: run.roulette.survive },
+        max_scatters: run.max_scatters.map(|n| n.min(u16::MAX as u32) as u16),
+        max_reflections: run.max_reflections,
+        max_events: run.max_events.unwrap_or(default.max_events),
+        until: run.until.as_ref().and_then(|until| {
+            let detector = document.system.detectors.position(&until.detector)?;
+            Some(Until { detector, relative: until.relative })
+        }),
+        paths: run.paths as usize,
+    }
+}
+
+/// True if a part is a face of a solid.
+pub fn is_face(part: &Part) -> bool {
+    matches!(part.kind, PartKind::Face(_))
+}

@@ -1,0 +1,209 @@
+//! Checks of media, coatings, scatter models and surfaces.
+
+use super::{Checker, ROUNDING, Section};
+use crate::error::Problem;
+use crate::system::document::{
+    Coating, ExtrasValue, Finish, Medium, Predicate, Scatter, Scattering, Selector, Specular, Surface,
+};
+
+impl<'a> Checker<'a> {
+    pub(super) fn media(&mut self) {
+        let document = self.document;
+        for (name, medium) in document.system.media.iter() {
+            let path = format!("media[{name:?}]");
+            self.require(name != "vacuum", &path, || {
+                Problem::error("\"vacuum\" is always there and cannot be defined").expecting("another name")
+            });
+            self.medium(medium, &path);
+        }
+        self.refer(Section::Media, &document.system.ambient, "ambient");
+    }
+
+    fn medium(&mut self, medium: &Medium, path: &str) {
+        match medium {
+            Medium::Constant { n, k, absorption } => {
+                self.positive(*n, &format!("{path}.n"));
+                self.not_negative(k.unwrap_or(0.0), &format!("{path}.k"));
+                self.not_negative(absorption.map_or(0.0, |a| a.0), &format!("{path}.absorption"));
+                self.require(k.is_none() || absorption.is_none(), path, || {
+                    Problem::error("both `k` and `absorption` are given").expecting("one of the two")
+                });
+            }
+            Medium::Sellmeier { b, c } => {
+                self.same_length([b.len(), c.len()], ["b", "c"], path);
+                b.iter().enumerate().for_each(|(at, b)| self.finite(*b, &format!("{path}.b[{at}]")));
+            }
+            Medium::Tabulated { wavelength, n, k } => {
+                self.same_length([wavelength.len(), n.len()], ["wavelength", "n"], path);
+                self.wavelengths(wavelength, &format!("{path}.wavelength"));
+                n.iter().enumerate().for_each(|(at, n)| self.positive(*n, &format!("{path}.n[{at}]")));
+                if let Some(k) = k {
+                    self.same_length([wavelength.len(), k.len()], ["wavelength", "k"], path);
+                    k.iter().enumerate().for_each(|(at, k)| self.not_negative(*k, &format!("{path}.k[{at}]")));
+                }
+            }
+        }
+    }
+
+    pub(super) fn coatings(&mut self) {
+        for (name, coating) in self.document.system.coatings.iter() {
+            self.coating(*coating, &format!("coatings[{name:?}]"));
+        }
+    }
+
+    fn coating(&mut self, coating: Coating, path: &str) {
+        match coating {
+            Coating::Fresnel => {}
+            Coating::Ideal { reflectance, transmittance } => {
+                self.shares(&[("reflectance", reflectance), ("transmittance", transmittance)], path);
+            }
+            Coating::Mirror { reflectance } => self.fraction(reflectance, &format!("{path}.reflectance")),
+            Coating::Metal { n, k } => {
+                self.positive(n, &format!("{path}.n"));
+                self.not_negative(k, &format!("{path}.k"));
+            }
+        }
+    }
+
+    pub(super) fn scatter(&mut self) {
+        for (name, scatter) in self.document.system.scatter.iter() {
+            let path = format!("scatter[{name:?}]");
+            self.scatter_model(scatter, &path);
+            let sum = lambertian(scatter);
+            self.require(!matches!(scatter, Scatter::Sum(_)) || sum <= 1.0 + ROUNDING, &path, || {
+                Problem::error(format!("the Lambertian parts add up to {sum}: more light leaves than arrives"))
+                    .expecting("a sum of at most 1")
+            });
+        }
+    }
+
+    fn scatter_model(&mut self, scatter: &Scatter, path: &str) {
+        match scatter {
+            Scatter::Lambertian { reflectance, transmittance } => {
+                self.shares(&[("reflectance", *reflectance), ("transmittance", *transmittance)], path);
+            }
+            Scatter::ABg { a, b, g, side: _ } => {
+                self.not_negative(*a, &format!("{path}.a"));
+                self.positive(*b, &format!("{path}.b"));
+                self.not_negative(*g, &format!("{path}.g"));
+            }
+            Scatter::Table { file, scale } => {
+                self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
+                self.not_negative(*scale, &format!("{path}.scale"));
+            }
+            Scatter::Sum(parts) => {
+                self.require(!parts.is_empty(), path, || Problem::error("this sum has no parts"));
+                for (at, part) in parts.iter().enumerate() {
+                    self.scatter_model(part, &format!("{path}[{at}]"));
+                }
+            }
+        }
+    }
+
+    pub(super) fn surfaces(&mut self) {
+        let document = self.document;
+        for (at, surface) in document.indices.surfaces.iter().zip(&document.system.surfaces) {
+            let path = format!("surfaces[{at}]");
+            self.selector(&surface.on, &format!("{path}.on"));
+            self.surface(surface, &path);
+        }
+        if let Some(finish) = &document.system.default {
+            self.finish(finish, "default");
+        }
+    }
+
+    fn finish(&mut self, finish: &'a Finish, path: &str) {
+        self.specular(finish.specular, finish.coating.as_deref(), path);
+        self.scattering(finish.scatter.as_deref(), finish.scattering, path);
+    }
+
+    fn surface(&mut self, surface: &'a Surface, path: &str) {
+        self.specular(surface.specular, surface.coating.as_deref(), path);
+        self.scattering(surface.scatter.as_deref(), surface.scattering, path);
+        if let Some(medium) = &surface.medium {
+            self.refer(Section::Media, medium, &format!("{path}.medium"));
+        }
+        if let Some((front, back)) = &surface.between {
+            self.refer(Section::Media, front, &format!("{path}.between[0]"));
+            self.refer(Section::Media, back, &format!("{path}.between[1]"));
+            self.require(surface.medium.is_none(), &format!("{path}.between"), || {
+                Problem::error("both `medium` and `between` are given")
+                    .expecting("`medium` for a closed solid, or `between` for an open sheet")
+            });
+        }
+        self.require(*surface != Surface::new(surface.on.clone()), path, || {
+            Problem::warning("this entry says nothing about the surfaces it selects")
+        });
+    }
+
+    fn specular(&mut self, specular: Option<Specular>, coating: Option<&'a str>, path: &str) {
+        if let Some(coating) = specular.and_then(Specular::coating) {
+            self.coating(coating, &format!("{path}.specular"));
+        }
+        if let Some(name) = coating {
+            self.refer(Section::Coatings, name, &format!("{path}.coating"));
+        }
+        self.require(specular.is_none() || coating.is_none(), &format!("{path}.coating"), || {
+            Problem::error("both `specular` and `coating` are given").expecting("one of the two")
+        });
+    }
+
+    fn scattering(&mut self, scatter: Option<&'a str>, scattering: Option<Scattering>, path: &str) {
+        if let Some(name) = scatter {
+            self.refer(Section::Scatter, name, &format!("{path}.scatter"));
+        }
+        let contradiction = scatter.is_some() && scattering == Some(Scattering::Off);
+        self.require(!contradiction, &format!("{path}.scattering"), || {
+            Problem::warning("this entry gives a scatter model and turns scatter off")
+        });
+    }
+
+    fn selector(&mut self, selector: &Selector, path: &str) {
+        match selector {
+            Selector::Tag(glob) => self.not_empty(glob, path, "the name of the material"),
+            Selector::Node(glob) => self.not_empty(glob, path, "the name of the node"),
+            Selector::Extras { key, value } => {
+                self.not_empty(key, &format!("{path}.key"), "the key");
+                if let ExtrasValue::Number(number) = value {
+                    self.finite(*number, &format!("{path}.value"));
+                }
+            }
+            Selector::Faces { of, predicate } => {
+                self.not_empty(of, &format!("{path}.of"), "the name of the node");
+                self.predicate(predicate, &format!("{path}.where"));
+            }
+            Selector::Any(parts) => {
+                self.require(!parts.is_empty(), path, || Problem::error("this list of selectors is empty"));
+                for (at, part) in parts.iter().enumerate() {
+                    self.selector(part, &format!("{path}[{at}]"));
+                }
+            }
+        }
+    }
+
+    fn predicate(&mut self, predicate: &Predicate, path: &str) {
+        match predicate {
+            Predicate::Radial { within, .. } => self.angle(within.0, (0.0, 90.0), &format!("{path}.within")),
+            Predicate::Normal { within, .. } => self.angle(within.0, (0.0, 180.0), &format!("{path}.within")),
+            Predicate::Box { min, max } => self.require(min.0.cmplt(max.0).all(), path, || {
+                Problem::error("this box has no volume").expecting("every coordinate of `min` below that of `max`")
+            }),
+            Predicate::Nearest { smooth, .. } => self.angle(smooth.0, (0.0, 180.0), &format!("{path}.smooth")),
+            Predicate::All(parts) => {
+                self.require(!parts.is_empty(), path, || Problem::error("this list of predicates is empty"));
+                for (at, part) in parts.iter().enumerate() {
+                    self.predicate(part, &format!("{path}[{at}]"));
+                }
+            }
+        }
+    }
+}
+
+/// Reflectance and transmittance of the Lambertian parts together, dimensionless.
+fn lambertian(scatter: &Scatter) -> f64 {
+    match scatter {
+        Scatter::Lambertian { reflectance, transmittance } => reflectance + transmittance,
+        Scatter::Sum(parts) => parts.iter().map(lambertian).sum(),
+        Scatter::ABg { .. } | Scatter::Table { .. } => 0.0,
+    }
+}

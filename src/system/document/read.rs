@@ -1,0 +1,230 @@
+//! The sections of a document, entry by entry.
+
+use super::entry::{self, Fault};
+use super::names::Names;
+use super::tree::{self, Node, Shape, Step};
+use super::{Indices, System};
+use crate::error::{Problem, did_you_mean};
+use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
+
+/// What a system is made of, as one reads it.
+pub const SECTIONS: &[&str] = &[
+    "name",
+    "geometry",
+    "ambient",
+    "media",
+    "coatings",
+    "scatter",
+    "surfaces",
+    "default",
+    "sources",
+    "detectors",
+    "run",
+];
+
+/// Problems taken down; finding the place of each takes time.
+const MOST: usize = 500;
+
+/// Reads entries and collects what is wrong with them.
+pub struct Reader<'a> {
+    /// The text of the document.
+    pub text: &'a str,
+    /// What is wrong so far; places, but no file.
+    pub problems: Vec<Problem>,
+    /// Paths of values that were replaced by stand-ins.
+    pub mended: Vec<String>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader that has found nothing yet.
+    pub fn new(text: &'a str) -> Reader<'a> {
+        Reader { text, problems: Vec::new(), mended: Vec::new() }
+    }
+
+    /// The system, as far as it can be read.
+    pub fn system(&mut self, root: &Node) -> (System, Indices) {
+        self.sections(root);
+        let (geometry, geometry_at) = self.list(root, "geometry");
+        let (surfaces, surfaces_at) = self.list(root, "surfaces");
+        let system = System {
+            name: self.single(root, "name"),
+            geometry,
+            ambient: self.single(root, "ambient").unwrap_or_else(|| "vacuum".to_owned()),
+            media: self.map(root, "media"),
+            coatings: self.map(root, "coatings"),
+            scatter: self.map(root, "scatter"),
+            surfaces,
+            default: self.single(root, "default"),
+            sources: self.map(root, "sources"),
+            detectors: self.map(root, "detectors"),
+            run: self.single(root, "run").unwrap_or_default(),
+        };
+        (system, Indices { geometry: geometry_at, surfaces: surfaces_at })
+    }
+
+    /// Refuses what is not a system, and sections that are unknown or given twice.
+    fn sections(&mut self, root: &Node) {
+        let named = root.name.as_deref().is_none_or(|name| name == "System");
+        let Shape::Fields(fields) = &root.shape else {
+            return self.push(
+                root.start..root.end,
+                "",
+                Problem::error("this is not a system").expecting("`System(..)`"),
+            );
+        };
+        if !named {
+            let name = root.name.clone().unwrap_or_default();
+            self.push(
+                root.start..root.start + name.len(),
+                "",
+                Problem::error(format!("this is a `{name}`")).expecting("`System(..)`"),
+            );
+        }
+        for (index, field) in fields.iter().enumerate() {
+            let place = field.start..field.start + field.name.len();
+            if fields[..index].iter().any(|earlier| earlier.name == field.name) {
+                self.push(place, &field.name, Problem::error(format!("section `{}` is given twice", field.name)));
+            } else if !SECTIONS.contains(&field.name.as_str()) {
+                self.push(place, &field.name, unknown_section(&field.name));
+            }
+        }
+    }
+
+    /// A section that is one value.
+    fn single<T: DeserializeOwned>(&mut self, root: &Node, section: &str) -> Option<T> {
+        root.child(section).and_then(|node| self.entry(node, section))
+    }
+
+    /// A section that is a list, and where in the list what could be read stands.
+    fn list<T: DeserializeOwned>(&mut self, root: &Node, section: &str) -> (Vec<T>, Vec<usize>) {
+        let Some(node) = root.child(section) else { return Default::default() };
+        let Shape::List(items) = &node.shape else {
+            self.wrong_shape(node, section, "a list in brackets, `[(..), ..]`");
+            return Default::default();
+        };
+        let read = |(at, item)| Some((self.entry(item, &format!("{section}[{at}]"))?, at));
+        items.iter().enumerate().filter_map(read).unzip()
+    }
+
+    /// A section that is a map from names.
+    fn map<T: DeserializeOwned>(&mut self, root: &Node, section: &str) -> Names<T> {
+        let Some(node) = root.child(section) else { return Names::default() };
+        let entries = match &node.shape {
+            Shape::Entries(entries) => entries,
+            _ => {
+                self.wrong_shape(node, section, "named entries in braces, `{\"name\": .., ..}`");
+                return Names::default();
+            }
+        };
+        let mut things: Vec<(String, T)> = Vec::new();
+        let mut seen = BTreeSet::new();
+        for (key, value) in entries {
+            let Some(name) = key.text() else {
+                self.push(
+                    key.start..key.end,
+                    section,
+                    Problem::error("a name must be text").expecting("a name in double quotes"),
+                );
+                continue;
+            };
+            let path = format!("{section}[{name:?}]");
+            if !seen.insert(name) {
+                self.push(key.start..key.end, section, Problem::error(format!("the name {name:?} is given twice")));
+            } else if let Some(thing) = self.entry(value, &path) {
+                things.push((name.to_owned(), thing));
+            }
+        }
+        things.into_iter().collect()
+    }
+
+    fn wrong_shape(&mut self, node: &Node, section: &str, expected: &str) {
+        let problem = Problem::error(format!("section `{section}` has the wrong form")).expecting(expected);
+        self.push(node.start..node.end, section, problem);
+    }
+
+    /// One entry of the document.
+    fn entry<T: DeserializeOwned>(&mut self, node: &Node, path: &str) -> Option<T> {
+        let entry = entry::read(&self.text[node.start..node.end]);
+        for fault in &entry.faults {
+            self.fault(node, path, fault);
+        }
+        entry.value
+    }
+
+    fn fault(&mut self, node: &Node, path: &str, fault: &Fault) {
+        let range = fault.range(node);
+        let mut path = format!("{path}{}", written(&fault.steps));
+        if let Some(field) = &fault.field
+            && fault.steps.last() != Some(&Step::Name(field.clone()))
+        {
+            path = format!("{path}.{field}");
+        }
+        let problem = fault.problem(&self.text[range.clone()]);
+        self.push(range, &path, problem);
+        self.mended.push(path);
+    }
+
+    fn push(&mut self, range: std::ops::Range<usize>, path: &str, problem: Problem) {
+        if self.problems.len() >= MOST {
+            return;
+        }
+        self.problems.push(problem.on(path).at(tree::place(self.text, range.start, range.end)));
+    }
+}
+
+fn unknown_section(name: &str) -> Problem {
+    let problem = Problem::error(format!("a system has no section `{name}`"));
+    match did_you_mean(name, SECTIONS.iter().copied()) {
+        Some(close) => problem.hinting(format!("did you mean `{close}`?")),
+        None => problem.expecting(format!("one of {}", SECTIONS.join(", "))),
+    }
+}
+
+/// True if a problem may be about a stand-in: at its path, below it, beside it in one list, or where it is compared
+/// with its neighbours.
+pub fn is_mended(mended: &[String], problem: &Problem) -> bool {
+    mended.iter().any(|mended| {
+        let list = mended.trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '[' | ']'));
+        let base = if list.contains('.') { list } else { mended };
+        let below = problem.path.strip_prefix(base);
+        let parent = mended.rfind('.').map(|dot| &mended[..dot]);
+        below.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '['])) || parent == Some(&problem.path)
+    })
+}
+
+/// Steps as one writes them: `.extent.radius`, `[0].a`.
+fn written(steps: &[Step]) -> String {
+    steps
+        .iter()
+        .map(|step| match step {
+            Step::Name(name) => format!(".{name}"),
+            Step::Index(index) => format!("[{index}]"),
+            Step::Variant(_) => String::new(),
+        })
+        .collect()
+}
+
+/// The steps of a path as one writes it: `surfaces[3].scatter`, `sources["sun"].extent.radius`.
+pub fn steps(path: &str) -> Option<Vec<Step>> {
+    let mut steps = Vec::new();
+    let mut rest = path;
+    while !rest.is_empty() {
+        let (step, after) = if rest.starts_with("[\"") {
+            // Names are written with Rust's escapes; ron reads them.
+            let end = tree::quoted(&rest[1..])?;
+            let name = ron::from_str(&rest[1..=end]).ok()?;
+            (Step::Name(name), rest[end + 1..].strip_prefix(']')?)
+        } else if let Some(inside) = rest.strip_prefix('[') {
+            let (index, after) = inside.split_once(']')?;
+            (Step::Index(index.parse().ok()?), after)
+        } else {
+            let word = rest.strip_prefix('.').unwrap_or(rest);
+            let end = word.find(['.', '[']).unwrap_or(word.len());
+            (Step::Name(word[..end].to_owned()), &word[end..])
+        };
+        steps.push(step);
+        rest = after;
+    }
+    Some(steps)
+}

@@ -1,0 +1,282 @@
+//! Light meets a surface: the bill of what is reflected, transmitted, scattered and absorbed, and the branches that go on.
+
+use super::film;
+use super::walk::Walk;
+use super::watch::{Sight, Watch};
+use crate::geometry::{Crossing, Frame, Hit};
+use crate::math::Rng;
+use crate::math::rng::mix;
+use crate::optics::stokes::reframe;
+use crate::optics::{Incidence, Stokes, refraction};
+use crate::packet::{Event, Packet};
+use crate::scene::{Crossed, Scene};
+use crate::surface::{Scattering, Shares, Surface};
+use crate::tally::layout::{Cut, Loss};
+use glam::DVec3;
+
+/// What one arrival comes to, per lane. Stokes vectors are in the frame whose x is s, W.
+struct Bill<const V: usize> {
+    reflected: [Stokes; V],
+    transmitted: [Stokes; V],
+    /// Scattered flux, W.
+    scattered: [f64; V],
+}
+
+/// The meeting: geometry and models.
+struct Meeting<'a, const V: usize> {
+    crossed: Crossed,
+    /// Whether light arrives at the front of the acting face.
+    front: bool,
+    part: u32,
+    surfaces: [&'a Surface; V],
+    shares: [Shares; V],
+    frame: Frame,
+    at: Incidence,
+    /// Local direction of the refracted ray, if there is one.
+    refracted: Option<DVec3>,
+}
+
+/// Lets the packet meet what it has reached. Branches to follow later go to `walk.waiting`; true if `packet` itself goes on.
+pub fn interact<const V: usize, W: Watch>(walk: &mut Walk<V, W>, packet: &mut Packet<V>, crossing: &Crossing) -> bool {
+    let Some(crossed) = walk.scene.cross(&crossing.hits, &packet.solids) else {
+        walk.book.lost(Loss::Crossing, packet.fluxes());
+        return false;
+    };
+    packet.ray.origin = crossing.point;
+    let Some(acting) = crossed.acting else {
+        film::depart(packet, crossing, true);
+        packet.solids = crossed.beyond;
+        return true;
+    };
+    let meeting = meet(walk.scene, packet, crossed, acting);
+    let mut bill = bill(&meeting, packet);
+    absorb(walk, packet, &meeting, &bill);
+    watch(walk, packet, crossing, &meeting, &bill);
+    limit(walk, packet, &meeting, &mut bill);
+    branch(walk, packet, crossing, &meeting, &bill)
+}
+
+fn meet<'a, const V: usize>(scene: &'a Scene, packet: &Packet<V>, crossed: Crossed, hit: Hit) -> Meeting<'a, V> {
+    let outward = scene.geometry.normal(hit.triangle);
+    let normal = if hit.front { outward } else { -outward };
+    // x lies in the plane of incidence, so y is the direction of s.
+    let frame = Frame::from_z_x(normal, -packet.ray.direction);
+    let mut wi = frame.to_local(-packet.ray.direction);
+    // At grazing incidence the sign of d.n may round the other way; the hit knows better.
+    wi.z = wi.z.max(f64::MIN_POSITIVE);
+    let index = crossed.media.map(|medium| scene.index(medium, packet.wavelength));
+    let at = Incidence { wi, wavelength: packet.wavelength, index };
+    let surfaces: [&Surface; V] = std::array::from_fn(|lane| scene.surface(hit, lane));
+    let shares = surfaces.map(|surface| surface.shares(&at));
+    let refracted = refraction::refract(wi, index[0].re, index[1].re);
+    let part = scene.part_of[hit.triangle as usize];
+    Meeting { crossed, front: hit.front, part, surfaces, shares, frame, at, refracted }
+}
+
+fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
+    let mut bill = Bill { reflected: [Stokes::ZERO; V], transmitted: [Stokes::ZERO; V], scattered: [0.0; V] };
+    let mut light = packet.light;
+    reframe(&mut light, packet.ray.direction, packet.transverse, meeting.frame.y);
+    for (lane, (light, shares)) in light.into_iter().zip(&meeting.shares).enumerate() {
+        bill.scattered[lane] = light.i * shares.scattered;
+        let Some(split) = shares.split else { continue };
+        let reflected = split.reflected.apply(light) * shares.specular[0];
+        let transmitted = split.transmitted.apply(light) * shares.specular[1];
+        if meeting.refracted.is_some() {
+            bill.reflected[lane] = reflected;
+            bill.transmitted[lane] = transmitted;
+        } else {
+            // Beyond the critical angle nothing passes (founding note, eq. 21): an ideal coating reflects it all.
+            bill.reflected[lane] = reflected + transmitted;
+        }
+    }
+    bill
+}
+
+/// Books what stays here, from the models: a wrong sampler shows up in the residual.
+fn absorb<const V: usize, W: Watch>(walk: &mut Walk<V, W>, packet: &Packet<V>, meeting: &Meeting<V>, bill: &Bill<V>) {
+    let absorbed: [f64; V] =
+        std::array::from_fn(|l| packet.light[l].i - bill.reflected[l].i - bill.transmitted[l].i - bill.scattered[l]);
+    walk.book.absorbed_in_part(meeting.part, absorbed);
+}
+
+/// Books and removes what the user's limits cut.
+fn limit<const V: usize, W: Watch>(
+    walk: &mut Walk<V, W>,
+    packet: &Packet<V>,
+    meeting: &Meeting<V>,
+    bill: &mut Bill<V>,
+) {
+    let ancestry = &packet.ancestry;
+    let settings = walk.settings;
+    let spent = ancestry.events >= settings.max_events;
+    for (lane, surface) in meeting.surfaces.iter().enumerate() {
+        if surface.scattering == Scattering::Off && bill.scattered[lane] > 0.0 {
+            let mut cut = [0.0; V];
+            cut[lane] = std::mem::take(&mut bill.scattered[lane]);
+            walk.book.cut(Cut::ScatterOff, cut);
+        }
+    }
+    if spent || settings.max_scatters.is_some_and(|most| ancestry.scatters >= most) {
+        let cut = std::mem::replace(&mut bill.scattered, [0.0; V]);
+        walk.book.cut(if spent { Cut::Events } else { Cut::Scatters }, cut);
+    }
+    if spent || settings.max_reflections.is_some_and(|most| ancestry.reflections >= most) {
+        let cut = std::mem::replace(&mut bill.reflected, [Stokes::ZERO; V]);
+        walk.book.cut(if spent { Cut::Events } else { Cut::Reflections }, cut.map(|light| light.i));
+    }
+    if spent {
+        let cut = std::mem::replace(&mut bill.transmitted, [Stokes::ZERO; V]);
+        walk.book.cut(Cut::Events, cut.map(|light| light.i));
+    }
+}
+
+/// The three ways on, in the order of the arrays below.
+const WAYS: [Event; 3] = [Event::Reflect, Event::Transmit, Event::Scatter];
+
+/// Sends the branches off; the last one that lives goes on in `packet`, the others wait.
+fn branch<const V: usize, W: Watch>(
+    walk: &mut Walk<V, W>,
+    packet: &mut Packet<V>,
+    crossing: &Crossing,
+    meeting: &Meeting<V>,
+    bill: &Bill<V>,
+) -> bool {
+    let factors = choose(walk, packet, bill);
+    let Some(last) = (0..3).rev().find(|&way| factors[way] > 0.0) else { return false };
+    for way in (0..last).filter(|&way| factors[way] > 0.0) {
+        let mut child = packet.clone();
+        child.ancestry.branch =
+            mix(child.ancestry.branch ^ mix((child.ancestry.events as u64) << 2 | (way as u64 + 1)));
+        child.rng = Rng::new(walk.seed, child.ancestry.history, child.ancestry.branch);
+        if leave(&mut child, crossing, meeting, bill, WAYS[way], factors[way]) {
+            walk.waiting.push(child);
+        }
+    }
+    leave(packet, crossing, meeting, bill, WAYS[last], factors[last])
+}
+
+/// Factor on each way's flux: 0 where it is not followed, 1 where it is followed beside others, 1 / probability where it
+/// was drawn in proportion to its flux. Specular ways are followed apart while the path has fewer than `splits` reflections
+/// at interfaces, scatter while it has fewer than `scatter_splits` scatters.
+fn choose<const V: usize, W: Watch>(walk: &Walk<V, W>, packet: &mut Packet<V>, bill: &Bill<V>) -> [f64; 3] {
+    let most = |flux: [f64; V]| flux.iter().fold(0.0, |most: f64, f| most.max(*f));
+    let flux = [most(bill.reflected.map(|s| s.i)), most(bill.transmitted.map(|s| s.i)), most(bill.scattered)];
+    let mut factors = flux.map(|f| (f > 0.0) as u8 as f64);
+    let specular_apart = packet.ancestry.ghosts < walk.settings.splits;
+    let scatter_apart = packet.ancestry.scatters < walk.settings.scatter_splits;
+    let pool: &[usize] = match (specular_apart, scatter_apart) {
+        (true, true) => &[],
+        (true, false) => &[1, 2],
+        (false, true) => &[0, 1],
+        (false, false) => &[0, 1, 2],
+    };
+    if pool.iter().filter(|&&way| flux[way] > 0.0).count() < 2 {
+        return factors;
+    }
+    let total: f64 = pool.iter().map(|&way| flux[way]).sum();
+    let mut rest = packet.rng.uniform() * total;
+    let chosen = pool.iter().copied().filter(|&way| flux[way] > 0.0).find(|&way| {
+        rest -= flux[way];
+        rest < 0.0
+    });
+    // Rounding may leave a rest of zero: the last live way then.
+    let chosen = chosen.or(pool.iter().copied().rev().find(|&way| flux[way] > 0.0));
+    for &way in pool {
+        factors[way] = if Some(way) == chosen { total / flux[way] } else { 0.0 };
+    }
+    factors
+}
+
+/// Turns `packet` into the branch that leaves by `way`; false if a scatter draw went nowhere.
+fn leave<const V: usize>(
+    packet: &mut Packet<V>,
+    crossing: &Crossing,
+    meeting: &Meeting<V>,
+    bill: &Bill<V>,
+    way: Event,
+    factor: f64,
+) -> bool {
+    let wi = meeting.at.wi;
+    let local = match way {
+        Event::Reflect => Some(refraction::reflect(wi)),
+        Event::Transmit => meeting.refracted,
+        Event::Scatter => return scatter(packet, crossing, meeting, bill, factor),
+    };
+    let Some(local) = local else { return false };
+    let light = if way == Event::Reflect { &bill.reflected } else { &bill.transmitted };
+    packet.light = light.map(|light| light * factor);
+    packet.transverse = meeting.frame.y;
+    depart(packet, crossing, meeting, local, way);
+    true
+}
+
+fn scatter<const V: usize>(
+    packet: &mut Packet<V>,
+    crossing: &Crossing,
+    meeting: &Meeting<V>,
+    bill: &Bill<V>,
+    factor: f64,
+) -> bool {
+    let (at, surfaces, shares) = (&meeting.at, &meeting.surfaces, &meeting.shares);
+    // The direction comes from the mixture of all lanes; each lane weighs its own value against the mixture's density.
+    let total: f64 = bill.scattered.iter().sum();
+    let mut rest = if V == 1 { 0.0 } else { packet.rng.uniform() * total };
+    let lane = (0..V).find(|&lane| {
+        rest -= bill.scattered[lane];
+        rest < 0.0
+    });
+    let lane = lane.unwrap_or(V - 1);
+    let Some(wo) = surfaces[lane].draw(at, &shares[lane], &mut packet.rng) else { return false };
+    let density: f64 = (0..V).map(|l| bill.scattered[l] / total * surfaces[l].density(at, &shares[l], wo)).sum();
+    for l in 0..V {
+        // `scattered` may have been cut to zero by a limit in this lane only.
+        let alive = (bill.scattered[l] > 0.0) as u8 as f64;
+        let flux = alive * packet.light[l].i * surfaces[l].value(at, &shares[l], wo) / density;
+        packet.light[l] = Stokes::unpolarised(flux * factor);
+    }
+    packet.transverse = Frame::from_z(meeting.frame.to_world(wo)).x;
+    depart(packet, crossing, meeting, wo, Event::Scatter);
+    true
+}
+
+/// Sets off in local direction `local`.
+fn depart<const V: usize>(packet: &mut Packet<V>, crossing: &Crossing, meeting: &Meeting<V>, local: DVec3, way: Event) {
+    packet.ray.direction = meeting.frame.to_world(local).normalize();
+    let passes = local.z < 0.0;
+    film::depart(packet, crossing, passes);
+    if passes {
+        packet.solids = meeting.crossed.beyond.clone();
+    }
+    packet.ancestry.step(meeting.part, way, meeting.surfaces[0].opaque());
+}
+
+fn watch<const V: usize, W: Watch>(
+    walk: &mut Walk<V, W>,
+    packet: &Packet<V>,
+    crossing: &Crossing,
+    meeting: &Meeting<V>,
+    bill: &Bill<V>,
+) {
+    walk.watch.event(|| {
+        let flux = packet.light[0].i;
+        let leaving = [bill.reflected[0].i / flux, bill.transmitted[0].i / flux, bill.scattered[0] / flux];
+        let wi = meeting.at.wi;
+        Sight {
+            depth: packet.ancestry.events,
+            point: crossing.point,
+            distance: crossing.distance,
+            part: meeting.part,
+            front: meeting.front,
+            angle: wi.x.hypot(wi.y).atan2(wi.z),
+            media: meeting.crossed.media,
+            flux,
+            fractions: [leaving[0], leaving[1], leaving[2], 1.0 - leaving.iter().sum::<f64>()],
+            direction: packet.ray.direction,
+            leaves: [
+                Some(meeting.frame.to_world(refraction::reflect(wi))),
+                meeting.refracted.map(|local| meeting.frame.to_world(local)),
+            ],
+        }
+    });
+}

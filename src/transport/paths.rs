@@ -1,0 +1,78 @@
+//! The path table: which sequences of surfaces and events get a row.
+//!
+//! Rows are chosen by a pilot run with random numbers of its own, so that the rows of the run proper are unbiased: a row is
+//! not there *because* of the light that it counts. What has no row is summed exactly in "other".
+
+use crate::packet::{Ancestry, Class, Packet, Step};
+use std::collections::HashMap;
+
+/// A row of the path table.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub detector: usize,
+    pub source: usize,
+    pub steps: Vec<Step>,
+    pub class: Class,
+    pub ghosts: u16,
+    pub scatters: u16,
+    pub last_scatter: Option<u32>,
+}
+
+/// The rows, found by detector and path key.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    pub rows: Vec<Row>,
+    index: HashMap<(usize, u64), usize>,
+}
+
+impl Rows {
+    /// Row of a path on a detector, if it has one.
+    pub fn find(&self, detector: usize, key: u64) -> Option<usize> {
+        self.index.get(&(detector, key)).copied()
+    }
+}
+
+/// What the pilot saw: flux and description by detector and path key.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates(HashMap<(usize, u64), (f64, Row)>);
+
+impl Candidates {
+    /// Notes an arrival; a path too long to spell out never gets a row.
+    pub fn note<const V: usize>(&mut self, detector: usize, packet: &Packet<V>) {
+        let ancestry = &packet.ancestry;
+        if ancestry.events as usize > ancestry.steps.len() {
+            return;
+        }
+        let entry = self.0.entry((detector, ancestry.key)).or_insert_with(|| (0.0, row(detector, ancestry)));
+        entry.0 += packet.flux();
+    }
+
+    /// Adds another pilot batch; call in order of batches, sums of floats depend on it.
+    pub fn merge(mut self, other: Candidates) -> Candidates {
+        for (key, (flux, row)) in other.0 {
+            self.0.entry(key).or_insert((0.0, row)).0 += flux;
+        }
+        self
+    }
+
+    /// The `most` fullest paths; ties by key, so that the choice is the same everywhere.
+    pub fn admit(self, most: usize) -> Rows {
+        let mut all: Vec<_> = self.0.into_iter().collect();
+        all.sort_by(|(ka, (fa, _)), (kb, (fb, _))| fb.total_cmp(fa).then(ka.cmp(kb)));
+        all.truncate(most);
+        let index = all.iter().enumerate().map(|(i, (key, _))| (*key, i)).collect();
+        Rows { rows: all.into_iter().map(|(_, (_, row))| row).collect(), index }
+    }
+}
+
+fn row(detector: usize, ancestry: &Ancestry) -> Row {
+    Row {
+        detector,
+        source: ancestry.source as usize,
+        steps: ancestry.steps.to_vec(),
+        class: ancestry.class(),
+        ghosts: ancestry.ghosts,
+        scatters: ancestry.scatters,
+        last_scatter: ancestry.last_scatter,
+    }
+}

@@ -1,0 +1,260 @@
+//! From slots to results: names, units, errors.
+
+use super::Counts;
+use super::book::coarse_cell;
+use crate::math::statistics::student95;
+use crate::packet::{Class, Step};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::tally::layout::{Cut, Loss, PATH_GRID};
+use crate::tally::results::*;
+use crate::tally::{Layout, Sums};
+use std::collections::BTreeMap;
+
+/// Bins fed by fewer source rays than this are not resolved: their error bar is itself a guess.
+const RESOLVED: u64 = 30;
+
+/// Lost flux above this fraction of the emitted makes a run not to be trusted.
+const MOST_LOST: f64 = 1e-6;
+
+/// Results of variant `lane`; `inputs` are the files read with their hashes, `warnings` what the compiler said.
+pub fn results<const V: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    counts: &Counts<V>,
+    lane: usize,
+    inputs: BTreeMap<String, String>,
+    mut warnings: Vec<String>,
+) -> Results {
+    let teller = Teller { scene, counts, lane };
+    let ledger_w = teller.ledger();
+    let doubts = teller.doubts(&ledger_w);
+    let trusted = doubts.is_empty();
+    warnings.extend(doubts);
+    let named = |labels: Vec<&str>, first: usize| {
+        let line = |(i, label): (usize, &&str)| (label.to_string(), teller.estimate(first + i));
+        labels.iter().enumerate().map(line).filter(|(_, e)| e.mean != 0.0).collect::<BTreeMap<_, _>>()
+    };
+    let layout = &counts.layout;
+    let mut absorbed_w = named(scene.parts.iter().map(|p| p.label.as_str()).collect(), layout.part(0));
+    for (i, filling) in scene.media.iter().enumerate() {
+        let estimate = teller.estimate(layout.medium(i));
+        if estimate.mean != 0.0 {
+            absorbed_w.insert(format!("medium {}", filling.label), estimate);
+        }
+    }
+    Results {
+        system: scene.name.clone(),
+        rays: counts.sums.batches * counts.batch_rays,
+        rays_requested: settings.rays,
+        seed: settings.seed,
+        batch_rays: counts.batch_rays,
+        batches: counts.sums.batches,
+        detectors: (0..scene.detectors.len()).map(|d| (scene.detectors[d].label.clone(), teller.detector(d))).collect(),
+        ledger_w,
+        absorbed_w,
+        lost_w: named(Loss::ALL.map(Loss::label).to_vec(), layout.losses().start),
+        terminated_w: named(Cut::ALL.map(Cut::label).to_vec(), layout.cuts().start),
+        warnings,
+        trusted,
+        inputs,
+        path_grid: PATH_GRID,
+        paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
+        maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),
+    }
+}
+
+struct Teller<'a, const V: usize> {
+    scene: &'a Scene,
+    counts: &'a Counts<V>,
+    lane: usize,
+}
+
+impl<const V: usize> Teller<'_, V> {
+    fn sums(&self) -> &Sums<V> {
+        &self.counts.sums
+    }
+
+    fn estimate(&self, slot: usize) -> Estimate {
+        self.sums().estimate(slot, self.lane)
+    }
+
+    fn ledger(&self) -> LedgerResult {
+        LedgerResult {
+            emitted: self.estimate(Layout::EMITTED),
+            absorbed: self.estimate(Layout::ABSORBED),
+            escaped: self.estimate(Layout::ESCAPED),
+            terminated: self.estimate(Layout::TERMINATED),
+            lost: self.estimate(Layout::LOST),
+            residual: self.estimate(Layout::RESIDUAL),
+        }
+    }
+
+    /// Reasons not to trust the run, in words.
+    fn doubts(&self, ledger: &LedgerResult) -> Vec<String> {
+        let mut doubts = Vec::new();
+        let (emitted, residual) = (ledger.emitted.mean, ledger.residual);
+        if ledger.lost.mean > MOST_LOST * emitted {
+            let share = 100.0 * ledger.lost.mean / emitted;
+            doubts.push(format!("{share:.2e} % of the emitted flux was lost to geometry faults"));
+        }
+        // Five sigma: one run in two million by chance; 1e-12 is the rounding of a sum of many small terms.
+        if residual.mean.abs() > 5.0 * residual.error + 1e-12 * emitted {
+            doubts
+                .push(format!("the ledger does not close: residual {:.3e} ± {:.1e} W", residual.mean, residual.error));
+        }
+        if self.estimate(self.counts.layout.cut(Cut::Events)).mean > 0.0 {
+            doubts.push("the limit max_events cut some light: see the ledger".into());
+        }
+        doubts
+    }
+
+    fn detector(&self, d: usize) -> DetectorResult {
+        let layout = &self.counts.layout;
+        let slot = layout.detector(d);
+        let flux_w = self.estimate(slot);
+        let rays = self.sums().rays(slot);
+        let fed: Vec<u64> =
+            (0..layout.bins(d)).map(|b| self.sums().rays(layout.bin(d, b))).filter(|&r| r > 0).collect();
+        let unresolved = fed.iter().filter(|&&r| r < RESOLVED).count() as f64 / fed.len().max(1) as f64;
+        let classes = (0..Class::COUNT)
+            .map(|c| (Class::from_index(c).label(self.scene.has_optics), self.estimate(layout.class(d, c))))
+            .filter(|(_, e)| e.mean > 0.0)
+            .collect();
+        DetectorResult {
+            flux_w,
+            interval95_w: flux_w.error * student95(self.sums().batches),
+            rays,
+            upper_limit_w: (rays == 0).then(|| self.upper()),
+            peak_w_m2: self.peak(d),
+            unit: self.scene.detectors[d].grid.unit().into(),
+            classes,
+            unresolved,
+        }
+    }
+
+    /// Three times the largest flux that one source ray can carry over N, W: what an empty bin may still hide.
+    fn upper(&self) -> f64 {
+        let rays = (self.sums().batches * self.counts.batch_rays) as f64;
+        3.0 * self.scene.sources.iter().map(|s| s.flux).sum::<f64>() / rays
+    }
+
+    fn peak(&self, d: usize) -> Peak {
+        let grid = &self.scene.detectors[d].grid;
+        let [_, columns] = grid.shape();
+        let value = |bin: usize| {
+            let extent = grid.extent(bin);
+            let estimate = self.estimate(self.counts.layout.bin(d, bin));
+            if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] }
+        };
+        let bins = 0..self.counts.layout.bins(d);
+        let best = bins.max_by(|&a, &b| value(a)[0].total_cmp(&value(b)[0]).then(b.cmp(&a)));
+        best.map_or(Peak::default(), |bin| {
+            let [mean, error] = value(bin);
+            Peak { mean, error, pixel: [bin / columns, bin % columns] }
+        })
+    }
+
+    fn map(&self, d: usize) -> MapResult {
+        let detector = &self.scene.detectors[d];
+        let grid = &detector.grid;
+        let bins = self.counts.layout.bins(d);
+        let upper = self.upper();
+        let mut map = MapResult {
+            detector: detector.label.clone(),
+            kind: grid.kind(),
+            shape: grid.shape(),
+            axes: grid.axes(),
+            unit: grid.unit(),
+            mean: vec![0.0; bins],
+            error: vec![0.0; bins],
+            rays: vec![0; bins],
+            upper: vec![0.0; bins],
+            extent: (0..bins).map(|bin| grid.extent(bin)).collect(),
+            origin: (grid.origin() + self.scene.shift).to_array(),
+            column_direction: grid.frame().x.to_array(),
+            row_direction: grid.frame().y.to_array(),
+            side: detector.side.label(),
+        };
+        for bin in 0..bins {
+            let slot = self.counts.layout.bin(d, bin);
+            let extent = map.extent[bin];
+            map.rays[bin] = self.sums().rays(slot);
+            if extent > 0.0 {
+                let estimate = self.estimate(slot);
+                map.mean[bin] = estimate.mean / extent;
+                map.error[bin] = estimate.error / extent;
+                map.upper[bin] = if map.rays[bin] == 0 { upper / extent } else { 0.0 };
+            }
+        }
+        map
+    }
+
+    /// Rows of one detector, brightest first, and what had no row.
+    fn paths(&self, d: usize) -> Vec<PathResult> {
+        let total = self.estimate(self.counts.layout.detector(d)).mean;
+        let areas = self.cell_areas(d);
+        let rows = self.counts.rows.rows.iter().enumerate().filter(|(_, row)| row.detector == d);
+        let mut paths: Vec<PathResult> = rows.filter_map(|(index, _)| self.path(index, total, &areas)).collect();
+        paths.sort_by(|a, b| b.flux_w.mean.total_cmp(&a.flux_w.mean).then(a.sequence.cmp(&b.sequence)));
+        let slot = self.counts.layout.other(d);
+        if self.sums().rays(slot) > 0 {
+            let flux_w = self.estimate(slot);
+            paths.push(PathResult {
+                detector: self.scene.detectors[d].label.clone(),
+                source: String::new(),
+                sequence: "other".into(),
+                class: "mixed".into(),
+                rays: self.sums().rays(slot),
+                flux_w,
+                percent: 100.0 * flux_w.mean / total,
+                ghost_order: 0,
+                scatter_order: 0,
+                last_scatter: String::new(),
+                optical_path_m: 0.0,
+                peak_w_m2: 0.0,
+            });
+        }
+        paths
+    }
+
+    fn path(&self, index: usize, total: f64, areas: &[f64]) -> Option<PathResult> {
+        let layout = &self.counts.layout;
+        let row = &self.counts.rows.rows[index];
+        let rays = self.sums().rays(layout.row(index));
+        if rays == 0 {
+            return None;
+        }
+        let flux_w = self.estimate(layout.row(index));
+        let cells = layout.row_cells(index).zip(areas).filter(|(_, area)| **area > 0.0);
+        let peak = cells.map(|(slot, area)| self.estimate(slot).mean / area).fold(0.0, f64::max);
+        let label = |part: u32| self.scene.parts[part as usize].label.as_str();
+        let source = self.scene.sources[row.source].label.clone();
+        let step = |s: &Step| format!("{}:{}", label(s.part()), s.event().letter());
+        let names = std::iter::once(source.clone()).chain(row.steps.iter().map(step));
+        Some(PathResult {
+            detector: self.scene.detectors[row.detector].label.clone(),
+            sequence: names.collect::<Vec<_>>().join(" > "),
+            source,
+            class: row.class.label(self.scene.has_optics),
+            rays,
+            flux_w,
+            percent: 100.0 * flux_w.mean / total,
+            ghost_order: row.ghosts as u32,
+            scatter_order: row.scatters as u32,
+            last_scatter: row.last_scatter.map_or(String::new(), |part| label(part).into()),
+            optical_path_m: self.estimate(layout.row_path(index)).mean / flux_w.mean,
+            peak_w_m2: peak,
+        })
+    }
+
+    /// Size of each cell of the coarse path grid, m2 or sr.
+    fn cell_areas(&self, d: usize) -> Vec<f64> {
+        let grid = &self.scene.detectors[d].grid;
+        let mut areas = vec![0.0; PATH_GRID * PATH_GRID];
+        for bin in 0..self.counts.layout.bins(d) {
+            areas[coarse_cell(bin, grid.shape())] += grid.extent(bin);
+        }
+        areas
+    }
+}

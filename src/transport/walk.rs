@@ -1,0 +1,243 @@
+//! One source ray from birth to the last of its branches: emit, fly, arrive, interact.
+
+use super::book::Book;
+use super::film;
+use super::interaction::interact;
+use super::watch::Watch;
+use crate::detector::{Arrival, Place};
+use crate::geometry::{Crossing, Left};
+use crate::math::Rng;
+use crate::math::lowdiscrepancy::Block;
+use crate::medium::absorption;
+use crate::packet::{Ancestry, Packet, Solids};
+use crate::scene::{PartKind, Scene};
+use crate::settings::Settings;
+use crate::source::Birth;
+use crate::tally::layout::{Cut, Loss};
+
+/// Everything a history needs.
+pub struct Walk<'a, const V: usize, W: Watch> {
+    pub scene: &'a Scene,
+    pub settings: &'a Settings,
+    /// Key of all random numbers.
+    pub seed: u64,
+    pub book: Book<'a, V>,
+    pub watch: W,
+    /// Branches that wait.
+    pub waiting: Vec<Packet<V>>,
+    /// Flux of the source ray in hand, W.
+    pub start: f64,
+}
+
+/// Which rays of a batch a source has: `first..first + count`.
+#[derive(Clone, Copy, Debug)]
+pub struct Quota {
+    pub first: u64,
+    pub count: u64,
+}
+
+/// Shares `batch` rays out among sources in proportion to their flux, at least one each (largest remainder first).
+pub fn quotas(scene: &Scene, batch: u64) -> Vec<Quota> {
+    let total: f64 = scene.sources.iter().map(|s| s.flux).sum();
+    let mut counts: Vec<u64> = scene.sources.iter().map(|s| ((s.flux / total * batch as f64) as u64).max(1)).collect();
+    while counts.iter().sum::<u64>() < batch {
+        let lack = |i: usize| scene.sources[i].flux / total * batch as f64 - counts[i] as f64;
+        let neediest = (0..counts.len()).max_by(|&a, &b| lack(a).total_cmp(&lack(b)).then(b.cmp(&a)));
+        neediest.into_iter().for_each(|i| counts[i] += 1);
+    }
+    while counts.iter().sum::<u64>() > batch {
+        let richest = (0..counts.len()).max_by_key(|&i| counts[i]);
+        richest.into_iter().for_each(|i| counts[i] -= 1);
+    }
+    let mut first = 0;
+    counts
+        .into_iter()
+        .map(|count| {
+            first += count;
+            Quota { first: first - count, count }
+        })
+        .collect()
+}
+
+impl<const V: usize, W: Watch> Walk<'_, V, W> {
+    /// Traces every source ray of batch `batch`.
+    pub fn batch(&mut self, batch: u64, quotas: &[Quota]) {
+        let size = quotas.last().map_or(0, |q| q.first + q.count);
+        let block = Block::new(self.seed, batch);
+        for (source, quota) in quotas.iter().enumerate() {
+            for index in quota.first..quota.first + quota.count {
+                let mut rng = Rng::new(self.seed, batch * size + index, 0);
+                let flux = self.scene.sources[source].flux / quota.count as f64;
+                let birth = self.scene.sources[source].emit(&mut |d| block.coordinate(index as u32, d, rng.uniform()));
+                let packet = self.born(source, batch * size + index, birth, flux, rng);
+                self.history(packet);
+            }
+        }
+    }
+
+    /// A packet at its source.
+    pub fn born(&mut self, source: usize, history: u64, birth: Birth, flux: f64, rng: Rng) -> Packet<V> {
+        let (left, solids) = start_of(self.scene, source, &birth);
+        let stokes = self.scene.sources[source].polarization.stokes;
+        Packet {
+            ray: birth.ray,
+            light: [stokes * flux; V],
+            transverse: birth.transverse,
+            wavelength: birth.wavelength,
+            solids,
+            left,
+            film: None,
+            rng,
+            ancestry: Ancestry::born(source as u16, history),
+        }
+    }
+
+    /// Follows a packet and all branches it grows.
+    pub fn history(&mut self, packet: Packet<V>) {
+        self.book.live.next_ray();
+        self.book.emitted(packet.fluxes());
+        self.start = packet.flux();
+        let mut next = Some(packet);
+        while let Some(mut packet) = next {
+            self.follow(&mut packet);
+            next = self.waiting.pop();
+        }
+    }
+
+    fn follow(&mut self, packet: &mut Packet<V>) {
+        while self.survives(packet) {
+            self.watch.follows(&packet.ancestry);
+            let crossing = match &packet.film {
+                Some(film) => film.next(),
+                None => match self.fly(packet) {
+                    Some(crossing) => film::open(self.scene, packet, crossing),
+                    None => return,
+                },
+            };
+            self.arrive(packet, &crossing);
+            if !interact(self, packet, &crossing) {
+                return;
+            }
+        }
+    }
+
+    /// Russian roulette: the mean is unchanged, the ledger books the difference.
+    fn survives(&mut self, packet: &mut Packet<V>) -> bool {
+        let roulette = self.settings.roulette;
+        let flux = packet.flux();
+        if flux >= roulette.below * self.start && flux > 0.0 {
+            return true;
+        }
+        if flux.is_nan() {
+            self.book.lost(Loss::Number, packet.fluxes());
+            return false;
+        }
+        let alive = flux > 0.0 && packet.rng.uniform() < roulette.survive;
+        let factor = if alive { 1.0 - 1.0 / roulette.survive } else { 1.0 };
+        self.book.cut(Cut::Roulette, packet.fluxes().map(|f| f * factor));
+        if alive {
+            packet.light = packet.light.map(|light| light * (1.0 / roulette.survive));
+        }
+        alive
+    }
+
+    /// To the next event, through what absorbs and past detectors in free space; `None`: it escaped.
+    fn fly(&mut self, packet: &mut Packet<V>) -> Option<Crossing> {
+        self.book.segments += 1;
+        self.watch.flight(&packet.ray, &packet.left);
+        let geometry = &self.scene.geometry;
+        let mut crossing = geometry.nearest(&packet.ray, &packet.left);
+        if crossing.is_none() && !packet.solids.is_empty() {
+            // No way leads out of a closed solid: a rounding has put the ray beyond an edge of the face that it left.
+            packet.ray.origin = geometry.inward(packet.ray.origin, &packet.left);
+            crossing = geometry.nearest(&packet.ray, &packet.left);
+        }
+        self.pass_windows(packet, crossing.as_ref());
+        let Some(crossing) = crossing else {
+            self.escape(packet);
+            return None;
+        };
+        let medium = self.scene.medium_in(&packet.solids);
+        let index = self.scene.index(medium, packet.wavelength);
+        packet.ancestry.optical_path += index.re * crossing.distance;
+        if index.im > 0.0 {
+            let lost = -(-absorption(index, packet.wavelength) * crossing.distance).exp_m1();
+            self.book.absorbed_in_medium(medium, packet.fluxes().map(|f| f * lost));
+            packet.light = packet.light.map(|light| light * (1.0 - lost));
+        }
+        Some(crossing)
+    }
+
+    /// Free-space detectors on the way. The light is recorded as it is at the crossing, absorption up to there included.
+    fn pass_windows(&mut self, packet: &Packet<V>, crossing: Option<&Crossing>) {
+        for (detector, watched) in self.scene.detectors.iter().enumerate() {
+            let Place::Window(window) = &watched.place else { continue };
+            let Some((front, point)) = window.crossing(&packet.ray, crossing.map(|c| c.point)) else { continue };
+            if !watched.side.sees(front) {
+                continue;
+            }
+            let index = self.scene.index(self.scene.medium_in(&packet.solids), packet.wavelength);
+            let distance = (point - packet.ray.origin).length();
+            let mut here = packet.clone();
+            here.ancestry.optical_path += index.re * distance;
+            if index.im > 0.0 {
+                let left = (-absorption(index, packet.wavelength) * distance).exp();
+                here.light = here.light.map(|light| light * left);
+            }
+            let arrival = Arrival { point, direction: packet.ray.direction, triangle: None };
+            self.book.arrived(self.scene, detector, &here, &arrival);
+        }
+    }
+
+    /// Detectors on the faces it meets, before anything happens to it.
+    fn arrive(&mut self, packet: &Packet<V>, crossing: &Crossing) {
+        for hit in &crossing.hits {
+            for &detector in &self.scene.part(*hit).detectors {
+                if self.scene.detectors[detector as usize].side.sees(hit.front) {
+                    let arrival = Arrival {
+                        point: crossing.point,
+                        direction: packet.ray.direction,
+                        triangle: Some(hit.triangle),
+                    };
+                    self.book.arrived(self.scene, detector as usize, packet, &arrival);
+                }
+            }
+        }
+    }
+
+    fn escape(&mut self, packet: &Packet<V>) {
+        for (detector, watched) in self.scene.detectors.iter().enumerate() {
+            if matches!(watched.place, Place::FarField) {
+                let arrival = Arrival { point: packet.ray.origin, direction: packet.ray.direction, triangle: None };
+                self.book.arrived(self.scene, detector, packet, &arrival);
+            }
+        }
+        self.watch.escaped(packet.ray, packet.flux());
+        if packet.solids.is_empty() {
+            self.book.escaped(packet.fluxes());
+        } else {
+            self.book.lost(Loss::Inside, packet.fluxes());
+        }
+    }
+}
+
+/// What a newborn ray leaves and the solids it starts in.
+fn start_of(scene: &Scene, source: usize, birth: &Birth) -> (Left, Solids) {
+    let left = birth
+        .from
+        .map_or_else(Left::nothing, |(triangle, front)| Left::one(triangle, scene.geometry.object(triangle), front));
+    if scene.sources[source].outside {
+        return (left, Solids::default());
+    }
+    let mut solids = scene.solids_at(birth.ray.origin);
+    if let Some((triangle, front)) = birth.from
+        && let PartKind::Face(solid) = scene.parts[scene.part_of[triangle as usize] as usize].kind
+    {
+        // On its own face parity is a matter of rounding: the shining side decides.
+        solids.leave(solid);
+        if !front {
+            solids.enter(solid);
+        }
+    }
+    (left, solids)
+}

@@ -1,0 +1,48 @@
+//! A look over the tracer's shoulder: for `straylight ray` and for tests. A run watches nothing, at no cost.
+
+use crate::geometry::{Left, Ray};
+use crate::packet::Ancestry;
+use glam::DVec3;
+
+/// One event of a watched packet.
+#[derive(Clone, Debug)]
+pub struct Sight {
+    /// Events before this one on its path.
+    pub depth: u32,
+    /// Scene coordinates, m.
+    pub point: DVec3,
+    /// Flight since the last event, m.
+    pub distance: f64,
+    /// Index of the part that acts.
+    pub part: u32,
+    /// Whether light arrives at its front.
+    pub front: bool,
+    /// Angle of incidence, rad.
+    pub angle: f64,
+    /// Indices of the media before and beyond.
+    pub media: [u16; 2],
+    /// Arriving flux, W.
+    pub flux: f64,
+    /// Reflected, transmitted, scattered, absorbed fractions of it.
+    pub fractions: [f64; 4],
+    /// Unit direction of arrival.
+    pub direction: DVec3,
+    /// Directions of the reflected and the transmitted ray.
+    pub leaves: [Option<DVec3>; 2],
+}
+
+/// Who watches.
+pub trait Watch {
+    /// A packet sets off from what it has left.
+    fn flight(&mut self, _ray: &Ray, _left: &Left) {}
+    /// The packet that the next event or escape is about.
+    fn follows(&mut self, _ancestry: &Ancestry) {}
+    /// A surface event. Called before branches are drawn.
+    fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
+    /// A packet left the scene.
+    fn escaped(&mut self, _ray: Ray, _flux: f64) {}
+}
+
+/// Nobody.
+pub struct Unwatched;
+impl Watch for Unwatched {}

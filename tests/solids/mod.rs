@@ -1,0 +1,119 @@
+//! Closed meshes with shared corners, and rays through them.
+
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use glam::DVec3;
+use straylight::geometry::{Bvh, Facet, Left, Ray, Triangle};
+use straylight::math::Rng;
+
+/// Icosahedron with every face divided in four `levels` times, corners on the unit sphere: 20 x 4^levels triangles.
+pub fn icosphere(levels: u32) -> Vec<Triangle> {
+    let g = 0.5 * (1.0 + 5f64.sqrt());
+    let corner = |i: usize| {
+        let (a, b) = ([-1.0, 1.0, -1.0, 1.0][i % 4], [g, g, -g, -g][i % 4]);
+        [DVec3::new(a, b, 0.0), DVec3::new(0.0, a, b), DVec3::new(b, 0.0, a)][i / 4].normalize()
+    };
+    #[rustfmt::skip]
+    const FACES: [[usize; 3]; 20] = [
+        [0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9], [5, 11, 4], [11, 10, 2], [10, 7, 6],
+        [7, 1, 8], [3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10],
+        [8, 6, 7], [9, 8, 1],
+    ];
+    let mut faces: Vec<_> = FACES.iter().map(|f| f.map(corner)).collect();
+    for _ in 0..levels {
+        faces = faces.into_iter().flat_map(quarter).collect();
+    }
+    faces.into_iter().map(|vertices| Triangle { vertices }).collect()
+}
+
+fn quarter([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
+    // a + b = b + a: neighbours compute the same bits.
+    let (ab, bc, ca) = ((a + b).normalize(), (b + c).normalize(), (c + a).normalize());
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+}
+
+/// Latitudes and longitudes: slivers at the poles.
+pub fn uv_sphere(rings: usize, sectors: usize) -> Vec<Triangle> {
+    let at = |i: usize, j: usize| {
+        let (theta, phi) = (std::f64::consts::PI * i as f64 / rings as f64, angle(j, sectors));
+        let radius = if i == 0 || i == rings { 0.0 } else { theta.sin() };
+        DVec3::new(radius * phi.cos(), radius * phi.sin(), theta.cos())
+    };
+    quads(rings, sectors, at)
+}
+
+/// About z, radii 1 and 0.3.
+pub fn torus(rings: usize, sectors: usize) -> Vec<Triangle> {
+    let at = |i: usize, j: usize| {
+        let (theta, phi) = (-angle(i, rings), angle(j, sectors));
+        let radius = 1.0 + 0.3 * theta.cos();
+        DVec3::new(radius * phi.cos(), radius * phi.sin(), 0.3 * theta.sin())
+    };
+    quads(rings, sectors, at)
+}
+
+fn angle(i: usize, of: usize) -> f64 {
+    std::f64::consts::TAU * (i % of) as f64 / of as f64
+}
+
+fn quads(rows: usize, columns: usize, at: impl Fn(usize, usize) -> DVec3) -> Vec<Triangle> {
+    let cells = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
+    let faces = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    faces.map(|vertices| Triangle { vertices }).filter(|t| t.area() > 0.0).collect()
+}
+
+/// From -1 to 1, every face divided in `n` x `n` squares.
+pub fn cube(n: usize) -> Vec<Triangle> {
+    let at = |i: usize| -1.0 + 2.0 * i as f64 / n as f64;
+    let mut faces = Vec::new();
+    for axis in 0..3 {
+        for (side, swap) in [(1.0, false), (-1.0, true)] {
+            let place = |i: usize, j: usize| {
+                let mut v = DVec3::ZERO;
+                let (first, second) = if swap { (j, i) } else { (i, j) };
+                (v[axis], v[(axis + 1) % 3], v[(axis + 2) % 3]) = (side, at(first), at(second));
+                v
+            };
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+                faces.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    faces.into_iter().map(|vertices| Triangle { vertices }).collect()
+}
+
+/// One object, exact corners.
+pub fn bvh(triangles: &[Triangle]) -> Bvh {
+    let facets = triangles.iter().map(|&triangle| Facet { triangle, object: 0, tolerance: 0.0 });
+    Bvh::build(&facets.collect::<Vec<_>>())
+}
+
+pub fn moved(triangles: &[Triangle], by: DVec3) -> Vec<Triangle> {
+    triangles.iter().map(|t| Triangle { vertices: t.vertices.map(|v| v + by) }).collect()
+}
+
+/// Uniform on the unit sphere.
+pub fn isotropic(rng: &mut Rng) -> DVec3 {
+    let [a, b] = rng.pair();
+    let (z, phi) = (1.0 - 2.0 * a, std::f64::consts::TAU * b);
+    let sin = (1.0 - z * z).max(0.0).sqrt();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), z)
+}
+
+/// Everything a ray meets until it escapes: how often it entered and left, walking on from each crossing.
+pub fn walk(bvh: &Bvh, ray: &Ray) -> [usize; 2] {
+    let (mut counts, mut ray, mut left) = ([0, 0], *ray, Left::nothing());
+    for _ in 0..1000 {
+        let Some(crossing) = bvh.nearest(&ray, &left) else { return counts };
+        for hit in &crossing.hits {
+            counts[!hit.front as usize] += 1;
+        }
+        left = Left::after(&crossing, true, &left);
+        ray.origin = crossing.point;
+    }
+    panic!("{ray:?} never escapes");
+}
