@@ -1,0 +1,11 @@
+//! The verification set: whole runs of systems written in RON against closed forms and independent quadratures.
+
+#[macro_use]
+#[path = "../support/mod.rs"]
+mod support;
+
+mod cavities;
+mod pulls;
+mod radiometry;
+mod slabs;
+mod stray;
