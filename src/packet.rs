@@ -42,28 +42,44 @@ impl<const V: usize> Packet<V> {
 }
 
 /// Set of solids (indices into `Scene::solids`) that a packet is in, at most eight deep.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Solids(ArrayVec<u16, 8>);
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Solids {
+    list: [u16; 8],
+    count: u8,
+}
 
 impl Solids {
     /// Goes in; false if it was in already or the nesting is too deep.
     pub fn enter(&mut self, solid: u16) -> bool {
-        !self.0.contains(&solid) && self.0.try_push(solid).is_ok()
+        let fits = !self.inside().contains(&solid) && (self.count as usize) < self.list.len();
+        if fits {
+            self.list[self.count as usize] = solid;
+            self.count += 1;
+        }
+        fits
     }
 
     /// Goes out; false if it was not in.
     pub fn leave(&mut self, solid: u16) -> bool {
-        let found = self.0.iter().position(|&s| s == solid);
-        found.map(|i| self.0.swap_remove(i)).is_some()
+        let found = self.inside().iter().position(|&s| s == solid);
+        if let Some(place) = found {
+            self.count -= 1;
+            self.list[place] = self.list[self.count as usize];
+        }
+        found.is_some()
     }
 
     /// True in the ambient.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.count == 0
     }
 
     pub fn iter(&self) -> impl Iterator<Item = u16> + '_ {
-        self.0.iter().copied()
+        self.inside().iter().copied()
+    }
+
+    fn inside(&self) -> &[u16] {
+        &self.list[..self.count as usize]
     }
 }
 

@@ -93,6 +93,9 @@ impl Scene {
 
     /// Medium of the innermost of `solids`.
     pub fn medium_in(&self, solids: &Solids) -> u16 {
+        if solids.is_empty() {
+            return self.ambient;
+        }
         let key = |s: u16| (self.solids[s as usize].priority, -self.solids[s as usize].volume);
         let innermost = solids.iter().max_by(|&a, &b| {
             let ((pa, va), (pb, vb)) = (key(a), key(b));
@@ -123,7 +126,7 @@ impl Scene {
     /// a solid that is entered and left again within the rounding of its corners are not there.
     /// `None`: the faces contradict the solids the packet is in.
     pub fn cross(&self, hits: &[Hit], solids: &Solids) -> Option<Crossed> {
-        let mut beyond = solids.clone();
+        let mut beyond = *solids;
         let mut between = None;
         for (i, hit) in hits.iter().enumerate() {
             match self.part(*hit).kind {

@@ -76,11 +76,11 @@ pub fn ray(args: &RayArgs) -> Result<Ending, Error> {
     let rows = Rows::default();
     let book = Book::<1>::new(&layout, Live::new(layout.len()), Some(&rows));
     let log = Log { rows: Vec::new(), more: 0, way: String::new() };
-    let packet = packet(args, scene, &settings);
+    let mut packet = packet(args, scene, &settings);
     tell(&start(&packet, scene));
     let mut walk =
         Walk { scene, settings: &settings, seed: settings.seed, book, watch: log, waiting: Vec::new(), start: 0.0 };
-    walk.history(packet);
+    walk.history(&mut packet);
     let sums = walk.book.finish();
     tell(&table(&walk.watch, scene));
     tell(&balance(scene, &layout, &sums));

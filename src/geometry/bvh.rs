@@ -1,81 +1,86 @@
 //! All triangles of a scene, and the one question: what does this ray meet next?
 //!
-//! The tree of boxes proposes in single precision (`wide`), the exact test decides in double (`shear`).
+//! The tree of boxes (`wide`) and its leaves (`leaf`) propose in single precision, the exact test decides in double (`shear`).
 
 use super::Triangle;
-use super::shear::{Corners, LEAF, Leaf};
-use super::tree::{NOBODY, Units, grow};
-use super::wide::Node;
+use super::tree::{Soup, Tree, Units, grow};
 use glam::DVec3;
 
-/// A triangle of a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facet {
-    pub triangle: Triangle,
-    /// The object it is part of.
-    pub object: u32,
-    /// How far its corners may be from where they should be, m: the rounding of the file it came from.
+/// Triangles that belong together.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<'a> {
+    /// m
+    pub vertices: &'a [DVec3],
+    /// Indices into `vertices`, counter-clockwise seen from the front.
+    pub triangles: &'a [[u32; 3]],
+    /// How far the vertices may be from where they should be, m: the rounding of the file they came from.
     pub tolerance: f64,
 }
 
-/// Triangles and a tree of boxes over them. Indices are those of the facets it was built from.
+/// Triangles and a tree of boxes over them. Triangles are numbered through, body after body; objects are bodies.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    pub(super) nodes: Vec<Node>,
-    /// `LEAF` slots each.
-    pub(super) leaves: Vec<Leaf>,
-    /// Triangle of each slot.
-    pub(super) triangles: Vec<u32>,
-    /// A slot of each triangle.
-    slots: Vec<u32>,
-    objects: Vec<u32>,
+    pub(super) tree: Tree,
     /// m
+    vertices: Vec<DVec3>,
+    records: Vec<Record>,
+    /// Of each object, m.
     tolerances: Vec<f64>,
     /// m
     bounds: [DVec3; 2],
+    /// Half the diagonal of the bounds, m.
+    radius: f64,
     /// Greatest tolerance, m.
     pub(super) tolerance: f64,
     pub(super) units: Units,
+}
+
+/// A triangle.
+#[derive(Clone, Copy, Debug)]
+struct Record {
+    vertices: [u32; 3],
+    object: u32,
 }
 
 /// Coordinates beyond this (m) would overflow when squared; a triangle that has one, or a NaN, is never met.
 const FARTHEST: f64 = 1e150;
 
 impl Bvh {
-    /// Some microseconds per facet, in parallel. Facets without area and those whose corners are not finite keep
-    /// their index but are never met. At most 2^32 - 1 facets.
-    pub fn build(facets: &[Facet]) -> Bvh {
-        let sound = |facet: &Facet| facet.triangle.vertices.iter().all(|v| v.abs().max_element() <= FARTHEST);
-        let usable: Vec<_> = (0u32..).zip(facets).filter(|(_, facet)| sound(facet)).collect();
-        let bounds = around(usable.iter().map(|(_, facet)| &facet.triangle));
+    /// Some microseconds per triangle, in parallel. Triangles whose corners are not finite keep their number but are never
+    /// met, as are those without area. At most 2^31 triangles and as many vertices.
+    pub fn build(bodies: &[Body]) -> Bvh {
+        let vertices: Vec<DVec3> = bodies.iter().flat_map(|body| body.vertices).copied().collect();
+        let mut records = Vec::with_capacity(bodies.iter().map(|body| body.triangles.len()).sum());
+        let mut first = 0;
+        for (object, body) in (0..).zip(bodies) {
+            records.extend(body.triangles.iter().map(|t| Record { vertices: t.map(|v| first + v), object }));
+            first += body.vertices.len() as u32;
+        }
+        let soup = Soup { vertices: &vertices, triangles: &|triangle: u32| records[triangle as usize].vertices };
+        let sound = |triangle: &u32| soup.corners(*triangle).iter().all(|v| v.abs().max_element() <= FARTHEST);
+        let usable: Vec<u32> = (0..records.len() as u32).filter(sound).collect();
+        let bounds = around(usable.iter().flat_map(|triangle| soup.corners(*triangle)));
         let units = Units::new(bounds);
-        let tree = grow(&units, usable.iter().map(|(i, facet)| (*i, facet.triangle.vertices)));
-        let (triangles, slots) = number(tree.order, facets.len());
-        let corners = |slot: &u32| {
-            let triangle = &facets.get(*slot as usize)?.triangle;
-            Some(Corners::new(triangle.vertices, triangle.normal()))
-        };
-        let leaf = |slots: &[u32]| Leaf::new(&slots.iter().map(corners).collect::<Vec<_>>());
+        let tolerances: Vec<f64> = bodies.iter().map(|body| body.tolerance).collect();
         Bvh {
-            leaves: triangles.chunks(LEAF).map(leaf).collect(),
-            nodes: tree.nodes,
-            triangles,
-            slots,
-            objects: facets.iter().map(|facet| facet.object).collect(),
-            tolerances: facets.iter().map(|facet| facet.tolerance).collect(),
+            tree: grow(&units, &usable, &soup),
+            tolerance: tolerances.iter().copied().fold(0.0, f64::max),
+            vertices,
+            records,
+            tolerances,
             bounds,
-            tolerance: facets.iter().fold(0.0, |greatest, facet| facet.tolerance.max(greatest)),
+            radius: 0.5 * (bounds[1] - bounds[0]).length(),
             units,
         }
     }
 
     /// Number of triangles.
     pub fn len(&self) -> usize {
-        self.slots.len()
+        self.records.len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.slots.is_empty()
+        self.records.is_empty()
     }
 
     /// Least and greatest corner of the box around all triangles, m; zeros if there are none.
@@ -85,17 +90,25 @@ impl Bvh {
 
     /// Half the diagonal of the bounds, m.
     pub fn radius(&self) -> f64 {
-        0.5 * (self.bounds[1] - self.bounds[0]).length()
+        self.radius
     }
 
     /// Triangle `index`; panics if there is none, as a slice would. So do the following.
+    #[inline]
     pub fn triangle(&self, index: u32) -> Triangle {
-        Triangle { vertices: self.corners_of(index).vertices() }
+        self.between(self.records[index as usize].vertices)
+    }
+
+    /// The triangle between three vertices.
+    #[inline(always)]
+    pub(super) fn between(&self, vertices: [u32; 3]) -> Triangle {
+        Triangle { vertices: vertices.map(|v| self.vertices[v as usize]) }
     }
 
     /// Unit normal on the front; zero for a triangle without area.
+    #[inline]
     pub fn normal(&self, index: u32) -> DVec3 {
-        self.corners_of(index).normal()
+        self.triangle(index).normal()
     }
 
     /// m2
@@ -104,54 +117,34 @@ impl Bvh {
     }
 
     /// The object it is part of.
+    #[inline]
     pub fn object(&self, index: u32) -> u32 {
-        self.objects[index as usize]
+        self.records[index as usize].object
     }
 
     /// How far its corners may be from where they should be, m.
+    #[inline]
     pub fn tolerance(&self, index: u32) -> f64 {
-        self.tolerances[index as usize]
+        self.tolerance_of(self.object(index))
+    }
+
+    /// How far the corners of an object may be from where they should be, m.
+    #[inline]
+    pub(super) fn tolerance_of(&self, object: u32) -> f64 {
+        self.tolerances[object as usize]
     }
 
     /// Memory held, bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..])
-            + size_of_val(&self.leaves[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.slots[..])
-            + size_of_val(&self.objects[..])
-            + size_of_val(&self.tolerances[..])
-    }
-
-    fn corners_of(&self, index: u32) -> Corners {
-        self.corners(self.slots[index as usize])
-    }
-
-    /// The triangle that stands in a slot.
-    #[inline(always)]
-    pub(super) fn corners(&self, slot: u32) -> Corners {
-        self.leaves[slot as usize / LEAF].corners(slot as usize % LEAF)
+        size_of_val(&self.tree.nodes[..])
+            + size_of_val(&self.tree.leaves[..])
+            + size_of_val(&self.vertices[..])
+            + size_of_val(&self.records[..])
     }
 }
 
-/// The box around triangles, m.
-fn around<'a>(triangles: impl Iterator<Item = &'a Triangle>) -> [DVec3; 2] {
-    let boxes = triangles.map(Triangle::bounds);
+/// The box around points, m.
+fn around(points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+    let boxes = points.map(|point| [point, point]);
     boxes.reduce(|sum, next| [sum[0].min(next[0]), sum[1].max(next[1])]).unwrap_or_default()
-}
-
-/// Slot -> triangle, with those that are in no leaf at the end; and triangle -> slot.
-fn number(mut order: Vec<u32>, count: usize) -> (Vec<u32>, Vec<u32>) {
-    const NOWHERE: u32 = u32::MAX;
-    let mut slots = vec![NOWHERE; count];
-    for (slot, &triangle) in order.iter().enumerate().filter(|(_, triangle)| **triangle != NOBODY) {
-        slots[triangle as usize] = slot as u32;
-    }
-    for (triangle, slot) in slots.iter_mut().enumerate() {
-        if *slot == NOWHERE {
-            *slot = order.len() as u32;
-            order.push(triangle as u32);
-        }
-    }
-    (order, slots)
 }

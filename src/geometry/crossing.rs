@@ -1,7 +1,7 @@
 //! What a ray meets, and what it has just left.
 
-use arrayvec::ArrayVec;
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// Most triangles reported at one place; of more, the nearest.
 pub const MOST_COINCIDENT: usize = 8;
@@ -17,6 +17,8 @@ pub struct Hit {
     /// direction . normal may differ, since this one follows from the exact test: every closed surface is
     /// entered as often as it is left.
     pub front: bool,
+    /// Unit, out of the front.
+    pub normal: DVec3,
 }
 
 /// The nearest thing a ray meets.
@@ -29,7 +31,7 @@ pub struct Crossing {
     pub point: DVec3,
     /// The nearest hit, then those that coincide with it within their tolerances, in order of distance (equal
     /// distances: of index). Never empty.
-    pub hits: ArrayVec<Hit, MOST_COINCIDENT>,
+    pub hits: SmallVec<[Hit; 2]>,
     /// True if the ray started within rounding of the first triangle and that is of the object it had left: it has
     /// gone from one triangle of a corner to another without moving.
     pub cornered: bool,
@@ -39,10 +41,10 @@ pub struct Crossing {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Left {
     /// What it stands on, the nearest first.
-    feet: ArrayVec<Foot, MOST_COINCIDENT>,
+    feet: SmallVec<[Foot; 2]>,
     /// Triangles of the same corner that were left before without moving, and on which side: not met from the other
     /// side, or a ray through a concave edge would pass from one to the other and back for ever.
-    corner: ArrayVec<(u32, bool), MOST_COINCIDENT>,
+    corner: SmallVec<[(u32, bool); 1]>,
 }
 
 /// A triangle that a ray starts on.
@@ -63,13 +65,13 @@ impl Left {
 
     /// A ray that starts on one triangle of an object, from its front or its back.
     pub fn one(triangle: u32, object: u32, front: bool) -> Left {
-        Left { feet: [Foot { triangle, object, front }].into_iter().collect(), corner: ArrayVec::new() }
+        Left { feet: SmallVec::from_iter([Foot { triangle, object, front }]), corner: SmallVec::new() }
     }
 
     /// A ray that goes on from `crossing`: to the other side (`passes`), or back to the side it came from. `before` is
     /// what it had left when it arrived there.
     pub fn after(crossing: &Crossing, passes: bool, before: &Left) -> Left {
-        let mut corner = ArrayVec::new();
+        let mut corner = SmallVec::new();
         if crossing.cornered {
             let latest = before.feet.first().map(|foot| (foot.triangle, foot.front));
             corner.extend(latest.into_iter().chain(before.corner.iter().copied()).take(MOST_COINCIDENT));

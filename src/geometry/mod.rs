@@ -3,6 +3,7 @@
 mod bvh;
 mod crossing;
 pub mod frame;
+mod leaf;
 pub mod mesh;
 mod nearest;
 pub mod ray;
@@ -11,7 +12,7 @@ mod tree;
 pub mod triangle;
 mod wide;
 
-pub use bvh::{Bvh, Facet};
+pub use bvh::{Body, Bvh};
 pub use crossing::{Crossing, Hit, Left, MOST_COINCIDENT};
 pub use frame::Frame;
 pub use ray::Ray;

@@ -24,70 +24,13 @@ use glam::DVec3;
 /// A ray prepared for triangle tests.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
-    origin: [f64; 4],
+    origin: [f64; 3],
     /// Which coordinate plays x, y, z; below 3.
-    axes: [usize; 3],
+    pub axes: [usize; 3],
     /// d_x / d_z and d_y / d_z, dimensionless, -1..1.
-    slope: [f64; 2],
+    pub slope: [f64; 2],
     /// 1 / d_z, dimensionless.
     stretch: f64,
-}
-
-/// Most triangles in a leaf: as many as are tested side by side.
-pub(super) const LEAF: usize = 4;
-
-/// The corners of the triangles of a leaf, `[corner][coordinate][triangle]`, m; the fourth coordinate of corner i is
-/// component i of the unit normal. Empty places are NaN: nothing meets them.
-#[repr(align(64))]
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Leaf([[[f64; LEAF]; 4]; 3]);
-
-impl Leaf {
-    pub fn new(triangles: &[Option<Corners>]) -> Leaf {
-        let mut leaf = Leaf([[[f64::NAN; LEAF]; 4]; 3]);
-        for (place, corners) in triangles.iter().enumerate().take(LEAF) {
-            let Some(Corners(rows)) = corners else { continue };
-            for (corner, row) in rows.iter().enumerate() {
-                for (coordinate, value) in row.iter().enumerate() {
-                    leaf.0[corner][coordinate][place] = *value;
-                }
-            }
-        }
-        leaf
-    }
-
-    /// The triangle in a place below `LEAF`.
-    pub fn corners(&self, place: usize) -> Corners {
-        Corners(self.0.map(|row| row.map(|values| values[place % LEAF])))
-    }
-}
-
-/// The corners of a triangle, one per row; the fourth column carries its unit normal, component by component.
-///
-/// The fourth column makes the row a power of two: choosing an axis at run time then needs no bounds check.
-#[repr(align(32))]
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corners(pub [[f64; 4]; 3]);
-
-impl Corners {
-    pub fn new(vertices: [DVec3; 3], normal: DVec3) -> Corners {
-        let row = |i: usize| [vertices[i].x, vertices[i].y, vertices[i].z, normal[i]];
-        Corners([row(0), row(1), row(2)])
-    }
-
-    pub fn normal(&self) -> DVec3 {
-        DVec3::new(self.0[0][3], self.0[1][3], self.0[2][3])
-    }
-
-    pub fn vertices(&self) -> [DVec3; 3] {
-        self.0.map(|row| DVec3::new(row[0], row[1], row[2]))
-    }
-
-    /// The point with these weights, m.
-    pub fn at(&self, weights: [f64; 3]) -> DVec3 {
-        let [a, b, c] = self.vertices();
-        a + weights[1] * (b - a) + weights[2] * (c - a)
-    }
 }
 
 /// The ray's line through a triangle.
@@ -114,46 +57,23 @@ impl Shear {
         };
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let slope = [d[axes[0]] / d[z], d[axes[1]] / d[z]];
-        let o = ray.origin;
-        Shear { origin: [o.x, o.y, o.z, 0.0], axes, slope, stretch: 1.0 / d[z] }
+        Shear { origin: ray.origin.to_array(), axes, slope, stretch: 1.0 / d[z] }
     }
 
     /// Sheared x' and y', and r_z, of one corner, m.
     #[inline(always)]
-    fn map(&self, corner: &[f64; 4]) -> [f64; 3] {
-        let r = |axis: usize| corner[axis & 3] - self.origin[axis & 3];
-        let z = r(self.axes[2]);
-        [r(self.axes[0]) - self.slope[0] * z, r(self.axes[1]) - self.slope[1] * z, z]
-    }
-
-    /// A bit for every triangle of a leaf that the line of the ray may pass through: all four are asked at once
-    /// whether the ray stands strictly left of one edge and strictly right of another, with the arithmetic of `meet`.
-    #[inline(always)]
-    pub fn proposes(&self, leaf: &Leaf) -> u32 {
-        let map = |corner: usize| {
-            let r = |axis: usize| {
-                let (from, values) = (self.origin[axis & 3], &leaf.0[corner][axis & 3]);
-                std::array::from_fn::<f64, LEAF, _>(|i| values[i] - from)
-            };
-            let (x, y, z) = (r(self.axes[0]), r(self.axes[1]), r(self.axes[2]));
-            let shear = |v: [f64; LEAF], slope: f64| std::array::from_fn::<f64, LEAF, _>(|i| v[i] - slope * z[i]);
-            (shear(x, self.slope[0]), shear(y, self.slope[1]))
-        };
-        let ((ax, ay), (bx, by), (cx, cy)) = (map(0), map(1), map(2));
-        let mut met = 0;
-        for i in 0..LEAF {
-            let edges = [bx[i] * cy[i] - by[i] * cx[i], cx[i] * ay[i] - cy[i] * ax[i], ax[i] * by[i] - ay[i] * bx[i]];
-            let left = (edges[0] >= 0.0) & (edges[1] >= 0.0) & (edges[2] >= 0.0);
-            let right = (edges[0] <= 0.0) & (edges[1] <= 0.0) & (edges[2] <= 0.0);
-            met |= ((left | right) as u32) << i;
-        }
-        met
+    fn map(&self, corner: DVec3) -> [f64; 3] {
+        let corner = corner.to_array();
+        let [x, y, z] = self.axes.map(|axis| axis.min(2)); // spares the bounds checks
+        let depth = corner[z] - self.origin[z];
+        let aside = |axis: usize, slope: f64| (corner[axis] - self.origin[axis]) - slope * depth;
+        [aside(x, self.slope[0]), aside(y, self.slope[1]), depth]
     }
 
     /// Where the line of the ray passes through the triangle, either way; None if it passes by.
     #[inline(always)]
-    pub fn meet(&self, corners: &Corners) -> Option<Meeting> {
-        let [a, b, c] = [self.map(&corners.0[0]), self.map(&corners.0[1]), self.map(&corners.0[2])];
+    pub fn meet(&self, vertices: &[DVec3; 3]) -> Option<Meeting> {
+        let [a, b, c] = vertices.map(|vertex| self.map(vertex));
         let edges = [
             (b[0] * c[1]) - (b[1] * c[0]), // opposite to a
             (c[0] * a[1]) - (c[1] * a[0]),
@@ -211,8 +131,8 @@ fn sign(x: f64) -> i32 {
 mod tests {
     use super::*;
 
-    fn corners(vertices: [[f64; 3]; 3]) -> Corners {
-        Corners::new(vertices.map(DVec3::from), DVec3::ZERO)
+    fn corners(vertices: [[f64; 3]; 3]) -> [DVec3; 3] {
+        vertices.map(DVec3::from)
     }
 
     #[test]

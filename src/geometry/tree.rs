@@ -1,10 +1,10 @@
-//! The one door to obvhs: triangles in, wide nodes and an order of slots out.
+//! The one door to obvhs: triangles in, wide nodes and the triangles of each leaf out.
 //!
 //! obvhs builds a binary tree by agglomerative clustering and reinsertion (Meister and Bittner, IEEE TVCG 24(3),
 //! 2018); here its nodes are gathered into wide ones (Wald, Benthin, Boulos, "Getting rid of packets", 2008).
 
-use super::shear::LEAF;
-use super::wide::{DEEPEST, Node, PAD, WIDTH};
+use super::leaf::{LEAF, Leaf};
+use super::wide::{Child, DEEPEST, Node, PAD, WIDTH};
 use arrayvec::ArrayVec;
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
@@ -36,36 +36,50 @@ impl Units {
     }
 }
 
-/// Stands in a slot where no triangle does.
-pub(super) const NOBODY: u32 = u32::MAX;
-
-/// Nodes, the first of them the root, and which triangle stands in which slot: every leaf has `LEAF` slots of its own.
+/// Nodes, the first of them the root, and leaves.
+#[derive(Clone, Debug)]
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
-    pub order: Vec<u32>,
+    pub leaves: Vec<Leaf>,
 }
 
-/// A tree over the triangles with these corners and indices.
-pub(super) fn grow(units: &Units, triangles: impl Iterator<Item = (u32, [DVec3; 3])>) -> Tree {
-    let (ids, boxes): (Vec<u32>, Vec<Aabb>) = triangles.map(|(id, vertices)| (id, padded(units, &vertices))).unzip();
-    if boxes.is_empty() {
-        return Tree { nodes: vec![Node::EMPTY], order: Vec::new() };
+/// Triangles by number.
+pub(super) struct Soup<'a, F: Fn(u32) -> [u32; 3]> {
+    /// m
+    pub vertices: &'a [DVec3],
+    /// The vertices of each.
+    pub triangles: &'a F,
+}
+
+impl<F: Fn(u32) -> [u32; 3]> Soup<'_, F> {
+    /// m
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        (self.triangles)(triangle).map(|v| self.vertices[v as usize])
     }
+}
+
+/// A tree over triangles with these numbers.
+pub(super) fn grow(units: &Units, triangles: &[u32], soup: &Soup<impl Fn(u32) -> [u32; 3]>) -> Tree {
+    let boxes: Vec<Aabb> = triangles.iter().map(|triangle| padded(units, &soup.corners(*triangle))).collect();
+    if boxes.is_empty() {
+        return Tree { nodes: vec![Node::new(&[])], leaves: Vec::new() };
+    }
+    let leaf = |primitives: &[u32]| {
+        let held = primitives.iter().map(|primitive| triangles[*primitive as usize]);
+        let named = held.map(|triangle| (triangle, (soup.triangles)(triangle)));
+        Leaf::new(units, &named.collect::<ArrayVec<_, LEAF>>(), soup.vertices)
+    };
     let built = (!concentric(&boxes)).then(|| {
         let binary = build_bvh2(&boxes, effort(boxes.len()), &mut Duration::default());
-        collapse(&binary.nodes, &binary.primitive_indices)
+        collapse(&binary.nodes, &binary.primitive_indices, &leaf)
     });
-    let mut tree = match built {
+    match built {
         Some((tree, depth)) if depth <= DEEPEST => tree,
         _ => {
             let (nodes, order) = halve(&boxes);
-            collapse(&nodes, &order).0
+            collapse(&nodes, &order, &leaf).0
         }
-    };
-    for slot in tree.order.iter_mut().filter(|slot| **slot != NOBODY) {
-        *slot = ids[*slot as usize];
     }
-    tree
 }
 
 /// Whether so many boxes share one centre that clustering, quadratic in their number, would take seconds.
@@ -87,29 +101,27 @@ fn padded(units: &Units, vertices: &[DVec3; 3]) -> Aabb {
 }
 
 /// Gathers a binary tree into wide nodes by opening the largest box first; also returns the levels of the result.
-fn collapse(binary: &[Bvh2Node], primitives: &[u32]) -> (Tree, usize) {
-    let mut tree = Tree { nodes: vec![Node::EMPTY], order: Vec::with_capacity(primitives.len()) };
+fn collapse(binary: &[Bvh2Node], primitives: &[u32], leaf: &impl Fn(&[u32]) -> Leaf) -> (Tree, usize) {
+    let mut tree = Tree { nodes: vec![Node::new(&[])], leaves: Vec::new() };
     let mut pending = vec![(0usize, 0usize, 1usize)];
     let mut depth = 1;
     while let Some((from, to, level)) = pending.pop() {
         depth = depth.max(level);
-        for (place, index) in open(binary, from).into_iter().enumerate() {
+        let mut held = ArrayVec::<_, WIDTH>::new();
+        for index in open(binary, from) {
             let child = &binary[index];
-            let (first, count) = if child.is_leaf() {
-                let first = tree.order.len() as u32;
-                let range = child.first_index as usize..(child.first_index + child.prim_count) as usize;
-                tree.order.extend_from_slice(&primitives[range]);
-                tree.order.resize(tree.order.len().next_multiple_of(LEAF), NOBODY);
-                (first, child.prim_count)
+            let what = if child.is_leaf() {
+                let first = child.first_index as usize;
+                tree.leaves.push(leaf(&primitives[first..first + child.prim_count as usize]));
+                Child::leaf(tree.leaves.len() - 1)
             } else {
-                tree.nodes.push(Node::EMPTY);
+                tree.nodes.push(Node::new(&[]));
                 pending.push((index, tree.nodes.len() - 1, level + 1));
-                (tree.nodes.len() as u32 - 1, 0)
+                Child::node(tree.nodes.len() - 1)
             };
-            let node = &mut tree.nodes[to];
-            node.set(place, child.aabb.min.to_array(), child.aabb.max.to_array());
-            (node.first[place], node.count[place]) = (first, count);
+            held.push(([child.aabb.min.to_array(), child.aabb.max.to_array()], what));
         }
+        tree.nodes[to] = Node::new(&held);
     }
     (tree, depth)
 }
@@ -160,22 +172,24 @@ mod tests {
     #[test]
     fn concentric_triangles_make_a_shallow_tree_that_holds_each_once() {
         let corners = [DVec3::X, DVec3::Y, -DVec3::X - DVec3::Y];
-        let nested: Vec<_> = (0..8000).map(|i| (i, corners.map(|v| v * (1.0 + i as f64)))).collect();
+        let vertices: Vec<DVec3> = (0..8000).flat_map(|i| corners.map(|v| v * (1.0 + i as f64))).collect();
+        let nested = Soup { vertices: &vertices, triangles: &|i| [3 * i, 3 * i + 1, 3 * i + 2] };
         let units = Units::new([DVec3::splat(-8000.0), DVec3::splat(8000.0)]);
         let start = std::time::Instant::now();
-        let mut order = grow(&units, nested.into_iter()).order;
+        let tree = grow(&units, &(0..8000).collect::<Vec<_>>(), &nested);
         assert!(start.elapsed() < Duration::from_secs(2));
+        let mut order: Vec<u32> =
+            tree.leaves.iter().flat_map(|leaf| (0..leaf.count).map(|i| leaf.triangle(i as usize).0)).collect();
         order.sort_unstable();
-        assert!(order.into_iter().filter(|&slot| slot != NOBODY).eq(0..8000));
+        assert!(order.into_iter().eq(0..8000));
     }
 
     #[test]
     fn a_tree_of_nothing_and_of_one_triangle_can_be_asked() {
         let units = Units::new([DVec3::ZERO, DVec3::ONE]);
-        assert!(grow(&units, std::iter::empty()).order.is_empty());
-        assert_eq!(
-            grow(&units, [(7, [DVec3::ZERO, DVec3::X, DVec3::Y])].into_iter()).order,
-            [7, NOBODY, NOBODY, NOBODY]
-        );
+        let corners = Soup { vertices: &[DVec3::ZERO, DVec3::X, DVec3::Y], triangles: &|_| [0, 1, 2] };
+        assert!(grow(&units, &[], &corners).leaves.is_empty());
+        let leaf = &grow(&units, &[7], &corners).leaves[0];
+        assert_eq!((leaf.count, leaf.triangle(0)), (1, (7, [0, 1, 2])));
     }
 }

@@ -47,6 +47,12 @@ impl Triangle {
         (a + b + c) / 3.0
     }
 
+    /// The point with these weights of the corners (sum 1), m.
+    pub fn at(&self, weights: [f64; 3]) -> DVec3 {
+        let [a, b, c] = self.vertices;
+        a + weights[1] * (b - a) + weights[2] * (c - a)
+    }
+
     /// False if a coordinate is infinite or not a number.
     pub fn is_finite(&self) -> bool {
         self.vertices.iter().all(|v| v.is_finite())

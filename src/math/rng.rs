@@ -25,6 +25,7 @@ impl Rng {
     }
 
     /// 64 random bits.
+    #[inline]
     pub fn bits(&mut self) -> u64 {
         if let Some(bits) = self.spare.take() {
             return bits;
@@ -36,6 +37,7 @@ impl Rng {
     }
 
     /// Uniform in [0, 1), 53 bits.
+    #[inline]
     pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * (0.5f64).powi(53)
     }
@@ -46,6 +48,7 @@ impl Rng {
     }
 
     /// Two uniforms in [0, 1).
+    #[inline]
     pub fn pair(&mut self) -> [f64; 2] {
         [self.uniform(), self.uniform()]
     }

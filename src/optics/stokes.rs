@@ -67,6 +67,11 @@ impl Stokes {
         Stokes { q: self.q * cos2 + self.u * sin2, u: self.u * cos2 - self.q * sin2, ..self }
     }
 
+    /// True if turning the axes changes its description: it has a linear part.
+    pub fn is_polarised(&self) -> bool {
+        self.q != 0.0 || self.u != 0.0
+    }
+
     /// Polarised flux, sqrt(Q^2 + U^2 + V^2), W; at most I.
     pub fn polarised(&self) -> f64 {
         (self.q * self.q + self.u * self.u + self.v * self.v).sqrt()

@@ -5,18 +5,27 @@ use crate::math::statistics::mean_and_error;
 
 /// Live sums of the batch in hand, one value per lane and slot; one per thread, empty between batches.
 pub struct Live<const V: usize> {
-    sums: Vec<[f64; V]>,
-    /// 1 + the last source ray that fed the slot.
-    last: Vec<u32>,
-    rays: Vec<u32>,
+    slots: Vec<Slot<V>>,
     touched: Vec<u32>,
     ray: u32,
+}
+
+#[derive(Clone, Copy)]
+struct Slot<const V: usize> {
+    sum: [f64; V],
+    /// 1 + the last source ray that fed it.
+    last: u32,
+    rays: u32,
+}
+
+impl<const V: usize> Slot<V> {
+    const EMPTY: Slot<V> = Slot { sum: [0.0; V], last: 0, rays: 0 };
 }
 
 impl<const V: usize> Live<V> {
     /// Room for `slots` slots: 8 V + 8 bytes each.
     pub fn new(slots: usize) -> Live<V> {
-        Live { sums: vec![[0.0; V]; slots], last: vec![0; slots], rays: vec![0; slots], touched: Vec::new(), ray: 0 }
+        Live { slots: vec![Slot::EMPTY; slots], touched: Vec::new(), ray: 0 }
     }
 
     /// A new source ray begins: what follows counts as one contribution per slot.
@@ -25,22 +34,24 @@ impl<const V: usize> Live<V> {
     }
 
     /// Adds to a slot, in the slot's unit (W mostly).
+    #[inline]
     pub fn add(&mut self, slot: usize, value: [f64; V]) {
-        if self.last[slot] != self.ray {
-            if self.rays[slot] == 0 {
+        let place = &mut self.slots[slot];
+        if place.last != self.ray {
+            if place.rays == 0 {
                 self.touched.push(slot as u32);
             }
-            self.last[slot] = self.ray;
-            self.rays[slot] += 1;
+            place.last = self.ray;
+            place.rays += 1;
         }
-        for (sum, value) in self.sums[slot].iter_mut().zip(value) {
+        for (sum, value) in place.sum.iter_mut().zip(value) {
             *sum += value;
         }
     }
 
     /// The sum in a slot so far.
     pub fn value(&self, slot: usize) -> [f64; V] {
-        self.sums[slot]
+        self.slots[slot].sum
     }
 
     /// Hands over the batch's sums and empties itself.
@@ -48,11 +59,8 @@ impl<const V: usize> Live<V> {
         self.touched.sort_unstable();
         let mut entries = Vec::with_capacity(self.touched.len());
         for slot in self.touched.drain(..) {
-            let i = slot as usize;
-            let sum = std::mem::replace(&mut self.sums[i], [0.0; V]);
-            let rays = std::mem::replace(&mut self.rays[i], 0) as u64;
-            self.last[i] = 0;
-            entries.push(Entry { slot, rays, sum, spread: [0.0; V] });
+            let Slot { sum, rays, .. } = std::mem::replace(&mut self.slots[slot as usize], Slot::EMPTY);
+            entries.push(Entry { slot, rays: rays as u64, sum, spread: [0.0; V] });
         }
         self.ray = 0;
         Sums { batches: 1, entries }

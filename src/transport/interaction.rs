@@ -57,8 +57,7 @@ pub fn interact<const V: usize, W: Watch>(walk: &mut Walk<V, W>, packet: &mut Pa
 }
 
 fn meet<'a, const V: usize>(scene: &'a Scene, packet: &Packet<V>, crossed: Crossed, hit: Hit) -> Meeting<'a, V> {
-    let outward = scene.geometry.normal(hit.triangle);
-    let normal = if hit.front { outward } else { -outward };
+    let normal = if hit.front { hit.normal } else { -hit.normal };
     // x lies in the plane of incidence, so y is the direction of s.
     let frame = Frame::from_z_x(normal, -packet.ray.direction);
     let mut wi = frame.to_local(-packet.ray.direction);
@@ -76,7 +75,9 @@ fn meet<'a, const V: usize>(scene: &'a Scene, packet: &Packet<V>, crossed: Cross
 fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
     let mut bill = Bill { reflected: [Stokes::ZERO; V], transmitted: [Stokes::ZERO; V], scattered: [0.0; V] };
     let mut light = packet.light;
-    reframe(&mut light, packet.ray.direction, packet.transverse, meeting.frame.y);
+    if light.iter().any(|light| light.is_polarised()) {
+        reframe(&mut light, packet.ray.direction, packet.transverse, meeting.frame.y);
+    }
     for (lane, (light, shares)) in light.into_iter().zip(&meeting.shares).enumerate() {
         bill.scattered[lane] = light.i * shares.scattered;
         let Some(split) = shares.split else { continue };
@@ -163,6 +164,9 @@ fn choose<const V: usize, W: Watch>(walk: &Walk<V, W>, packet: &mut Packet<V>, b
     let most = |flux: [f64; V]| flux.iter().fold(0.0, |most: f64, f| most.max(*f));
     let flux = [most(bill.reflected.map(|s| s.i)), most(bill.transmitted.map(|s| s.i)), most(bill.scattered)];
     let mut factors = flux.map(|f| (f > 0.0) as u8 as f64);
+    if factors.iter().sum::<f64>() < 2.0 {
+        return factors;
+    }
     let specular_apart = packet.ancestry.ghosts < walk.settings.splits;
     let scatter_apart = packet.ancestry.scatters < walk.settings.scatter_splits;
     let pool: &[usize] = match (specular_apart, scatter_apart) {
@@ -235,8 +239,8 @@ fn scatter<const V: usize>(
         let flux = alive * packet.light[l].i * surfaces[l].value(at, &shares[l], wo) / density;
         packet.light[l] = Stokes::unpolarised(flux * factor);
     }
-    packet.transverse = Frame::from_z(meeting.frame.to_world(wo)).x;
     depart(packet, crossing, meeting, wo, Event::Scatter);
+    packet.transverse = Frame::from_z(packet.ray.direction).x;
     true
 }
 
@@ -246,7 +250,7 @@ fn depart<const V: usize>(packet: &mut Packet<V>, crossing: &Crossing, meeting: 
     let passes = local.z < 0.0;
     film::depart(packet, crossing, passes);
     if passes {
-        packet.solids = meeting.crossed.beyond.clone();
+        packet.solids = meeting.crossed.beyond;
     }
     packet.ancestry.step(meeting.part, way, meeting.surfaces[0].opaque());
 }

@@ -69,8 +69,8 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
                 let mut rng = Rng::new(self.seed, batch * size + index, 0);
                 let flux = self.scene.sources[source].flux / quota.count as f64;
                 let birth = self.scene.sources[source].emit(&mut |d| block.coordinate(index as u32, d, rng.uniform()));
-                let packet = self.born(source, batch * size + index, birth, flux, rng);
-                self.history(packet);
+                let mut packet = self.born(source, batch * size + index, birth, flux, rng);
+                self.history(&mut packet);
             }
         }
     }
@@ -93,14 +93,14 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
     }
 
     /// Follows a packet and all branches it grows.
-    pub fn history(&mut self, packet: Packet<V>) {
+    pub fn history(&mut self, packet: &mut Packet<V>) {
         self.book.live.next_ray();
         self.book.emitted(packet.fluxes());
         self.start = packet.flux();
-        let mut next = Some(packet);
-        while let Some(mut packet) = next {
-            self.follow(&mut packet);
-            next = self.waiting.pop();
+        self.follow(packet);
+        while let Some(branch) = self.waiting.pop() {
+            *packet = branch;
+            self.follow(packet);
         }
     }
 

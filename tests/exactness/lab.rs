@@ -130,8 +130,8 @@ pub fn shot(compiled: &Compiled, rays: &[Ray]) -> Trace {
             let transverse = ray.direction.any_orthonormal_vector();
             let birth = Birth { ray, from: None, wavelength: 550e-9, transverse };
             let rng = straylight::math::Rng::new(1, history as u64, 0);
-            let packet = walk.born(0, history as u64, birth, 1.0, rng);
-            walk.history(packet);
+            let mut packet = walk.born(0, history as u64, birth, 1.0, rng);
+            walk.history(&mut packet);
         }
     })
 }

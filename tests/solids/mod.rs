@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use glam::DVec3;
-use straylight::geometry::{Bvh, Facet, Left, Ray, Triangle};
+use straylight::geometry::{Body, Bvh, Left, Ray, Triangle};
 use straylight::math::Rng;
 
 /// Icosahedron with every face divided in four `levels` times, corners on the unit sphere: 20 x 4^levels triangles.
@@ -88,8 +88,9 @@ pub fn cube(n: usize) -> Vec<Triangle> {
 
 /// One object, exact corners.
 pub fn bvh(triangles: &[Triangle]) -> Bvh {
-    let facets = triangles.iter().map(|&triangle| Facet { triangle, object: 0, tolerance: 0.0 });
-    Bvh::build(&facets.collect::<Vec<_>>())
+    let vertices: Vec<DVec3> = triangles.iter().flat_map(|triangle| triangle.vertices).collect();
+    let triangles: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Bvh::build(&[Body { vertices: &vertices, triangles: &triangles, tolerance: 0.0 }])
 }
 
 pub fn moved(triangles: &[Triangle], by: DVec3) -> Vec<Triangle> {

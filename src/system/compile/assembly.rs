@@ -2,7 +2,7 @@
 
 use super::Shop;
 use crate::error::Problem;
-use crate::geometry::{Facet, Triangle};
+use crate::geometry::Body;
 use crate::system::document as written;
 use crate::system::gltf::{self, Node};
 use crate::system::select;
@@ -149,14 +149,9 @@ impl Assembly {
     }
 
     /// What the tree of boxes is built from.
-    pub fn facets(&self) -> Vec<Facet> {
-        let facet = |node: usize, vertices: [DVec3; 3]| Facet {
-            triangle: Triangle { vertices },
-            object: node as u32,
-            tolerance: self.nodes[node].mesh.tolerance,
-        };
-        (0..self.nodes.len())
-            .flat_map(|node| self.triangles_of(node).map(move |(_, corners)| facet(node, corners)))
-            .collect()
+    pub fn bodies(&self) -> Vec<Body<'_>> {
+        let meshes = self.nodes.iter().map(|node| &node.mesh);
+        let body = meshes.map(|m| Body { vertices: &m.vertices, triangles: &m.triangles, tolerance: m.tolerance });
+        body.collect()
     }
 }

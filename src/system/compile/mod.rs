@@ -98,10 +98,9 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         let acts = |surface: u32| assigned.surfaces[surface as usize].optical();
         part.surface.iter().flatten().any(|&surface| acts(surface))
     });
-    let facets = assembly.facets();
     let scene = Scene {
         name: document.system.name.clone().unwrap_or_else(|| stem(document)),
-        geometry: Bvh::build(&facets),
+        geometry: Bvh::build(&assembly.bodies()),
         part_of: assembly.part_of.clone(),
         parts,
         surfaces: assigned.surfaces,
