@@ -11,16 +11,18 @@ use straylight::tally::results::{Estimate, Results};
 
 cases! { cav_01 cav_02 cav_03 cav_04 cav_04x cav_05 cav_06 cav_06x cav_07 cav_07x }
 
-/// Ports are black caps 12 um inside a sphere of 20 k triangles whose facets sag by at most 12 um; the slit between cap
-/// and wall adds at most 2e-3 of a port's flux.
+/// Ports are black caps just inside a sphere of 82 k triangles, deeper than its facets sag (4 um); light that enters the
+/// slit between cap and wall adds 2 sag / port radius, at most 2e-3 of a port's flux.
 fn cav_01(trial: &mut Trial) {
     let radius = trial.case.given("/sphere_inner_radius");
-    let mut model = Model::new().add("wall", flipped(sphere(radius, 5, Equal::Corners)));
+    let wall = sphere(radius, 6, Equal::Corners);
+    let depth = wall.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).normalize().dot(*a)).fold(radius, f64::min);
+    let mut model = Model::new().add("wall", flipped(wall));
     let axes = [DVec3::X, DVec3::Y];
     let ports: Vec<_> = trial.case.values().into_iter().filter(|v| v["port_radius"].is_number()).collect();
     for (i, port) in ports.iter().enumerate() {
         let angle = (number(port, "port_radius") / radius).asin();
-        model = model.add(&format!("port_{i}"), facing(zone(radius - 12e-3, [0.0, angle], 8, 128), axes[i]));
+        model = model.add(&format!("port_{i}"), facing(zone(depth - 1e-4, [0.0, angle], 32, 128), axes[i]));
     }
     let text = "scatter: {\"white\": Lambertian(reflectance: 0.95)},
         surfaces: [(on: Node(\"wall\"), specular: Absorb, scatter: \"white\"),
