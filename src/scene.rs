@@ -126,6 +126,12 @@ impl Scene {
     /// a solid that is entered and left again within the rounding of its corners are not there.
     /// `None`: the faces contradict the solids the packet is in.
     pub fn cross(&self, hits: &[Hit], solids: &Solids) -> Option<Crossed> {
+        if let [hit] = hits
+            && self.part(*hit).kind == PartKind::Sheet
+        {
+            let acting = (!self.surface(*hit, 0).is_plain()).then_some(*hit);
+            return Some(Crossed { media: [self.medium_in(solids); 2], beyond: *solids, acting });
+        }
         let mut beyond = *solids;
         let mut between = None;
         for (i, hit) in hits.iter().enumerate() {

@@ -45,6 +45,7 @@ pub struct Surface {
     pub lobes: Vec<Box<dyn Bsdf>>,
     pub order: Order,
     pub scattering: Scattering,
+    opaque: bool,
 }
 
 /// The bill of one arrival, fractions of the incident flux: what each branch gets, before polarisation.
@@ -61,9 +62,20 @@ pub struct Shares {
 }
 
 impl Surface {
+    pub fn new(
+        label: String,
+        specular: Option<Box<dyn Coating>>,
+        lobes: Vec<Box<dyn Bsdf>>,
+        order: Order,
+        scattering: Scattering,
+    ) -> Surface {
+        let opaque = specular.as_ref().is_none_or(|c| c.opaque()) && !lobes.iter().any(|l| l.transmits());
+        Surface { label, specular, lobes, order, scattering, opaque }
+    }
+
     /// True if light never passes: a reflection here is meant, not a ghost.
     pub fn opaque(&self) -> bool {
-        self.specular.as_ref().is_none_or(|c| c.opaque()) && !self.lobes.iter().any(|l| l.transmits())
+        self.opaque
     }
 
     /// True if it mirrors or refracts: an optical element, not a wall.

@@ -125,13 +125,7 @@ impl Bvh {
     /// How far its corners may be from where they should be, m.
     #[inline]
     pub fn tolerance(&self, index: u32) -> f64 {
-        self.tolerance_of(self.object(index))
-    }
-
-    /// How far the corners of an object may be from where they should be, m.
-    #[inline]
-    pub(super) fn tolerance_of(&self, object: u32) -> f64 {
-        self.tolerances[object as usize]
+        self.tolerances[self.object(index) as usize]
     }
 
     /// Memory held, bytes.

@@ -77,7 +77,10 @@ impl Left {
             corner.extend(latest.into_iter().chain(before.corner.iter().copied()).take(MOST_COINCIDENT));
         }
         let foot = |hit: &Hit| Foot { triangle: hit.triangle, object: hit.object, front: hit.front != passes };
-        Left { feet: crossing.hits.iter().map(foot).collect(), corner }
+        let first = foot(&crossing.hits[0]);
+        let mut feet = SmallVec::from_buf_and_len([first, first], 1);
+        feet.extend(crossing.hits[1..].iter().map(foot));
+        Left { feet, corner }
     }
 
     /// The nearest triangle that the ray starts on.

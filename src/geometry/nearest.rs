@@ -38,15 +38,23 @@ const BEHIND: f64 = 1024.0;
 #[derive(Clone, Copy)]
 struct Candidate {
     number: u32,
-    object: u32,
-    triangle: Triangle,
+    vertices: [u32; 3],
     /// Unit.
     normal: DVec3,
+    /// |d . n|, dimensionless.
+    cosine: f64,
     /// Along the ray, m, not negative.
     distance: f64,
     meeting: Meeting,
     /// True if the origin may lie on its plane.
     touched: bool,
+}
+
+impl Candidate {
+    /// By distance; equal distances by number.
+    fn rank(&self) -> (f64, u32) {
+        (self.distance, self.number)
+    }
 }
 
 /// The nearest candidates of a descent, in order.
@@ -64,6 +72,29 @@ impl Found {
     /// Nothing yet; everything nearer than `floor` (m) is wanted.
     fn within(floor: f64) -> Found {
         Found { list: ArrayVec::new(), limit: f64::INFINITY, searched: f64::INFINITY, floor }
+    }
+
+    /// Takes a candidate within the limit, `tolerance` being the greatest of the scene, m.
+    fn insert(&mut self, candidate: Candidate, tolerance: f64) {
+        if self.list.iter().any(|c| c.number == candidate.number) {
+            return;
+        }
+        let nearest = self.list.first().is_none_or(|first| candidate.rank() < first.rank());
+        if nearest {
+            // The reach is at least the sum of the tolerances of any two.
+            let behind = if tolerance > 0.0 { 2.0 * tolerance / candidate.cosine } else { 0.0 };
+            let limit = (candidate.distance + behind).max(self.floor);
+            self.list.retain(|c| c.distance <= limit);
+            (self.limit, self.searched) = (limit, self.searched.min(limit));
+        }
+        let place = if nearest { 0 } else { self.list.partition_point(|c| c.rank() < candidate.rank()) };
+        if place == self.list.capacity() {
+            return;
+        }
+        if self.list.is_full() {
+            self.list.pop();
+        }
+        self.list.insert(place, candidate);
     }
 }
 
@@ -168,44 +199,24 @@ impl Query<'_> {
         let triangle = self.bvh.between(vertices);
         let Some(meeting) = self.shear.meet(&triangle.vertices) else { return };
         if meeting.distance <= found.limit {
-            self.consider(number, triangle, meeting, found);
+            self.consider(number, vertices, &triangle, meeting, found);
         }
     }
 
-    fn consider(&self, number: u32, triangle: Triangle, meeting: Meeting, found: &mut Found) {
-        let (object, normal) = (self.bvh.object(number), triangle.normal());
+    fn consider(&self, number: u32, vertices: [u32; 3], triangle: &Triangle, meeting: Meeting, found: &mut Found) {
+        let normal = triangle.normal();
         let cosine = normal.dot(self.ray.direction).abs();
-        let foot = self.left.on(object).filter(|_| meeting.distance.abs() * cosine <= self.delta);
+        let near = meeting.distance.abs() * cosine <= self.delta;
+        let foot = if near { self.left.on(self.bvh.object(number)) } else { None };
         let ahead = match foot {
-            Some(foot) => self.goes_on(number, &triangle, normal, foot, &meeting),
+            Some(foot) => self.goes_on(number, triangle, normal, foot, &meeting),
             None => meeting.distance > 0.0,
         };
         if ahead {
             let distance = meeting.distance.max(0.0) + 0.0; // never -0.0
             let touched = foot.is_some();
-            self.insert(Candidate { number, object, triangle, normal, distance, meeting, touched }, cosine, found);
-        }
-    }
-
-    fn insert(&self, candidate: Candidate, cosine: f64, found: &mut Found) {
-        let rank = |c: &Candidate| (c.distance, c.number);
-        if found.list.iter().any(|c| c.number == candidate.number) {
-            return;
-        }
-        let place = found.list.iter().position(|c| rank(&candidate) < rank(c)).unwrap_or(found.list.len());
-        if place == found.list.capacity() {
-            return;
-        }
-        if found.list.is_full() {
-            found.list.pop();
-        }
-        found.list.insert(place, candidate);
-        if place == 0 {
-            let reach = 2.0 * self.bvh.tolerance; // at least that of both
-            let behind = if reach > 0.0 { reach / cosine } else { 0.0 };
-            let limit = (candidate.distance + behind).max(found.floor);
-            found.list.retain(|c| c.distance <= limit);
-            (found.limit, found.searched) = (limit, found.searched.min(limit));
+            found
+                .insert(Candidate { number, vertices, normal, cosine, distance, meeting, touched }, self.bvh.tolerance);
         }
     }
 
@@ -224,20 +235,25 @@ impl Query<'_> {
 
     /// The nearest candidate with those that coincide with it.
     fn crossing(&self, found: &Found) -> Option<Crossing> {
-        let nearest = found.list.first()?;
-        let cosine = nearest.normal.dot(self.ray.direction).abs();
-        let tolerance = self.bvh.tolerance_of(nearest.object);
-        let coincides = |c: &Candidate| {
-            let parallel = nearest.normal.dot(c.normal).abs() >= PARALLEL;
-            let gap = (c.distance - nearest.distance) * cosine;
-            parallel && gap <= tolerance + self.bvh.tolerance_of(c.object)
+        let (nearest, others) = found.list.split_first()?;
+        let hit = |c: &Candidate| {
+            let object = self.bvh.object(c.number);
+            Hit { triangle: c.number, object, front: c.meeting.front, normal: c.normal }
         };
-        let hit =
-            |c: &Candidate| Hit { triangle: c.number, object: c.object, front: c.meeting.front, normal: c.normal };
-        let mut hits = SmallVec::from_iter([hit(nearest)]);
-        hits.extend(found.list.iter().skip(1).filter(|c| coincides(c)).map(hit).take(MOST_COINCIDENT - 1));
+        let first = hit(nearest);
+        let mut hits = SmallVec::from_buf_and_len([first, first], 1);
+        if !others.is_empty() {
+            let tolerance = self.bvh.tolerance(first.triangle);
+            let coincides = |c: &&Candidate| {
+                let parallel = nearest.normal.dot(c.normal).abs() >= PARALLEL;
+                let gap = (c.distance - nearest.distance) * nearest.cosine;
+                parallel && gap <= tolerance + self.bvh.tolerance(c.number)
+            };
+            hits.extend(others.iter().filter(coincides).map(hit).take(MOST_COINCIDENT - 1));
+        }
         let behind = nearest.meeting.distance < 0.0;
-        let point = if behind { self.ray.origin } else { nearest.triangle.at(nearest.meeting.weights) };
+        let at = || self.bvh.between(nearest.vertices).at(nearest.meeting.weights);
+        let point = if behind { self.ray.origin } else { at() };
         Some(Crossing { distance: nearest.distance, point, hits, cornered: nearest.touched })
     }
 }

@@ -32,13 +32,7 @@ fn bundle(theta: f64, f: impl Fn(DVec3) -> DVec3) -> (f64, f64) {
 
 /// A surface that is nothing but specular.
 fn polished(coating: impl Coating + 'static) -> Surface {
-    Surface {
-        label: "polished".into(),
-        specular: Some(Box::new(coating)),
-        lobes: Vec::new(),
-        order: Order::ScatterFirst,
-        scattering: Scattering::On,
-    }
+    Surface::new("polished".into(), Some(Box::new(coating)), Vec::new(), Order::ScatterFirst, Scattering::On)
 }
 
 #[test]

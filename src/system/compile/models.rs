@@ -154,20 +154,16 @@ impl Finish {
         let document = shop.document;
         let scatter = self.scatter.as_ref().and_then(|name| Some((name, document.system.scatter.get(name)?)));
         let lobes = scatter.map_or(Vec::new(), |(name, model)| lobes(shop, model, &format!("scatter[{name:?}]")));
-        Surface {
-            label: self.label(),
-            specular: specular.map(coating),
-            lobes,
-            order: match self.order {
-                written::Order::ScatterFirst => Order::ScatterFirst,
-                written::Order::Scaled => Order::Scaled,
-                written::Order::Total => Order::Total,
-            },
-            scattering: match self.scattering {
-                written::Scattering::On => Scattering::On,
-                written::Scattering::Off => Scattering::Off,
-            },
-        }
+        let order = match self.order {
+            written::Order::ScatterFirst => Order::ScatterFirst,
+            written::Order::Scaled => Order::Scaled,
+            written::Order::Total => Order::Total,
+        };
+        let scattering = match self.scattering {
+            written::Scattering::On => Scattering::On,
+            written::Scattering::Off => Scattering::Off,
+        };
+        Surface::new(self.label(), specular.map(coating), lobes, order, scattering)
     }
 }
 
