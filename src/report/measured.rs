@@ -1,7 +1,8 @@
 //! A number and its error, as one writes them by hand.
 //!
 //! The error is rounded to two significant digits and the mean to the same decimal place:
-//! `0.02267 ± 0.00015`, `(2.267 ± 0.015)e-6`. An error of exactly zero means that the number is not an estimate.
+//! `0.02267 ± 0.00015`, `(2.267 ± 0.015)e-6`. An error of zero, or of the rounding of a sum, means that the number is not an
+//! estimate.
 
 /// "mean ± error" in the caller's unit. Without error: up to six digits; an error that is not a number is shown as "?".
 #[must_use]
@@ -14,6 +15,9 @@ pub fn measured(mean: f64, error: f64) -> String {
 pub fn below(limit: f64) -> String {
     format!("< {}", ceiling(limit))
 }
+
+/// Relative error of a sum of equal terms.
+const ROUNDING: f64 = 1e-14;
 
 /// A mean and its error in digits that share one power of ten.
 pub(super) struct Digits {
@@ -32,7 +36,7 @@ impl Digits {
         if !error.is_finite() {
             return Digits { error: Some("?".into()), ..Digits::exact(mean, 4) };
         }
-        if error <= 0.0 {
+        if error <= ROUNDING * mean.abs() {
             return Digits::exact(mean, 6);
         }
         let largest = decade(mean.abs().max(error), 17);
@@ -122,6 +126,7 @@ mod tests {
     fn an_exact_number_carries_no_error_and_an_unknown_error_is_said() {
         assert_eq!(measured(1.0, 0.0), "1");
         assert_eq!(measured(0.0, 0.0), "0");
+        assert_eq!(measured(0.04, 3e-18), "0.04");
         assert_eq!(measured(0.5, f64::NAN), "0.5 ± ?");
         assert_eq!(measured(f64::NAN, 1.0), "? ± ?");
         assert_eq!(measured(1.25e-300, 0.0), "1.25e-300");

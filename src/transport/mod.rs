@@ -138,7 +138,14 @@ fn one_batch<const V: usize>(
     (sums, segments)
 }
 
-/// Chooses the rows of the path table with random numbers of their own: a sixteenth of the run, at most 2^20 rays.
+/// Parts of the run that the pilot may trace; it goes on to the next while it has seen too little.
+const PILOT: [u64; 3] = [16, 8, 4];
+
+/// Effective arrivals on every detector that are enough to choose rows from.
+const ENOUGH: f64 = 256.0;
+
+/// Chooses the rows of the path table with random numbers of their own: from a sixteenth of the run, up to a quarter where
+/// little arrives; at most 2^20 and 2^22 rays.
 fn pilot<const V: usize>(
     scene: &Scene,
     settings: &Settings,
@@ -150,19 +157,25 @@ fn pilot<const V: usize>(
         return Rows::default();
     }
     let layout = scene.layout(0);
-    let rays = (settings.rays / 16).clamp(256, 1 << 20);
-    let batches = rays.div_ceil(batch_rays);
     let seed = mix(settings.seed ^ 0x7069_6c6f_7421);
-    let seen: Vec<Candidates> = (0..batches)
-        .into_par_iter()
-        .map(|batch| {
-            let book = Book::new(&layout, Live::<V>::new(layout.len()), None);
-            let mut walk = Walk { scene, settings, seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
-            if !stop.load(Ordering::Relaxed) {
-                walk.batch(batch, quotas);
-            }
-            walk.book.candidates
-        })
-        .collect();
-    seen.into_iter().fold(Candidates::default(), Candidates::merge).admit(settings.paths)
+    let trace = |batch: u64| {
+        let book = Book::new(&layout, Live::<V>::new(layout.len()), None);
+        let mut walk = Walk { scene, settings, seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
+        if !stop.load(Ordering::Relaxed) {
+            walk.batch(batch, quotas);
+        }
+        walk.book.candidates
+    };
+    let (mut seen, mut done) = (Candidates::default(), 0);
+    for part in PILOT {
+        let rays = (settings.rays / part).clamp(256, (1 << 24) / part);
+        let end = rays.div_ceil(batch_rays);
+        let round: Vec<Candidates> = (done..end).into_par_iter().map(trace).collect();
+        seen = round.into_iter().fold(seen, Candidates::merge);
+        done = end;
+        if seen.effective(scene.detectors.len()) >= ENOUGH {
+            break;
+        }
+    }
+    seen.admit(settings.paths)
 }
