@@ -11,7 +11,7 @@ use glam::DVec3;
 pub struct Body<'a> {
     /// m
     pub vertices: &'a [DVec3],
-    /// Indices into `vertices`, counter-clockwise seen from the front.
+    /// Indices of `vertices` there are, counter-clockwise seen from the front.
     pub triangles: &'a [[u32; 3]],
     /// How far the vertices may be from where they should be, m: the rounding of the file they came from.
     pub tolerance: f64,

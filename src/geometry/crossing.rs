@@ -17,7 +17,7 @@ pub struct Hit {
     /// direction . normal may differ, since this one follows from the exact test: every closed surface is
     /// entered as often as it is left.
     pub front: bool,
-    /// Unit, out of the front.
+    /// Unit, out of the front; zero for triangles above some 1e77 m.
     pub normal: DVec3,
 }
 

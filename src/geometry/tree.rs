@@ -25,10 +25,12 @@ pub(super) struct Units {
 impl Units {
     /// For a scene between two corners, m.
     pub fn new(bounds: [DVec3; 2]) -> Units {
-        let half = 0.5 * (bounds[1] - bounds[0]);
-        let size = half.max_element();
-        let scale = if size > 0.0 && size.is_finite() { (-size.log2().ceil()).exp2() } else { 1.0 };
-        Units { centre: bounds[0] + half, scale }
+        let centre = bounds[0] + 0.5 * (bounds[1] - bounds[0]);
+        // From the rounded centre: a scene of a few roundings of its position must not stick out.
+        let size = (bounds[1] - centre).max(centre - bounds[0]).max_element();
+        // The least sizes would make the scale infinite.
+        let scale = if size > 0.0 && size.is_finite() { (-size.log2().ceil()).min(1000.0).exp2() } else { 1.0 };
+        Units { centre, scale }
     }
 
     pub fn point(&self, v: DVec3) -> DVec3 {
@@ -182,6 +184,23 @@ mod tests {
             tree.leaves.iter().flat_map(|leaf| (0..leaf.count).map(|i| leaf.triangle(i as usize).0)).collect();
         order.sort_unstable();
         assert!(order.into_iter().eq(0..8000));
+    }
+
+    #[test]
+    fn no_corner_lies_outside_the_unit_box() {
+        let tiny = 1e-310;
+        let close = f64::EPSILON;
+        for bounds in [
+            [DVec3::ZERO, DVec3::splat(tiny)],
+            [
+                DVec3::new(1.0 + close, -0.5 * close, -0.5 * close),
+                DVec3::new(1.0 + 2.0 * close, 0.5 * close, 0.5 * close),
+            ],
+            [DVec3::splat(-1e150), DVec3::splat(1e150)],
+        ] {
+            let units = Units::new(bounds);
+            assert!(bounds.iter().all(|&corner| units.point(corner).abs().max_element() <= 1.0), "{units:?}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //!
 //!     integral of f_j cos(theta_s) dw_s = TIS(theta_j)
 //!
-//! where TIS is linear between the trapezoidal sums over the table's lobes and goes on as it went beyond the last (see `shape`). Light sees, in its plane of incidence,
+//! where TIS is linear between the trapezoidal sums over the table's lobes and goes on rising as it rose beyond the last (see `shape`). Light sees, in its plane of incidence,
 //!
 //!     f = (1 - w) f_j + w f_(j+1),     w = (theta - theta_j) / (theta_(j+1) - theta_j)
 //!
@@ -104,7 +104,7 @@ impl Tabulated {
         let sheet = |&theta: &f64| {
             let plane = Plane::at(theta);
             let value = grid.corners().map(|d| shape.at(&plane, d)).collect();
-            Sheet::new(&grid, value, continued(&shape.incidence, &tis, theta).clamp(0.0, 1.0 / brightest))
+            Sheet::new(&grid, value, continued(&shape.incidence, &tis, theta).min(1.0 / brightest))
         };
         let sheets = nodes.iter().map(sheet).collect();
         Ok(Tabulated { spectrum: (table.wavelength, table.factor), grid, nodes, sheets })
@@ -130,11 +130,13 @@ impl Tabulated {
     }
 }
 
-/// TIS at incidence `theta` (rad): linear between the entries of a table, held below the first, and beyond the last as steep as
-/// between the last two; not yet kept within 0..1.
+/// TIS at incidence `theta` (rad): linear between the entries of a table, held below the first; beyond the last it rises as it rose
+/// between the last two, if it did. Not yet kept below 1.
 fn continued(incidence: &[f64], tis: &[f64], theta: f64) -> f64 {
     match (incidence, tis) {
-        ([.., from, last], [.., before, end]) if theta > *last => end + (end - before) / (last - from) * (theta - last),
+        ([.., from, last], [.., before, end]) if theta > *last => {
+            end + ((end - before) / (last - from)).max(0.0) * (theta - last)
+        }
         _ => linear(incidence, tis, theta),
     }
 }
@@ -253,6 +255,7 @@ mod tests {
         let (incidence, tis) = ([0.0, 1.0, 1.2], [0.1, 0.1, 0.3]);
         assert!((continued(&incidence, &tis, 1.3) - 0.4).abs() < 1e-12);
         assert_eq!(continued(&incidence, &tis, 0.5), 0.1);
+        assert_eq!(continued(&incidence, &[0.3, 0.3, 0.1], 1.3), 0.1);
         assert_eq!(continued(&[0.0], &[0.2], 1.3), 0.2);
     }
 

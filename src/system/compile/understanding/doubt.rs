@@ -86,7 +86,7 @@ fn ranges(scene: &Scene, note: Note) {
     }
 }
 
-/// Surfaces that send off more than arrives, at 0, 5, .., 85 deg.
+/// Surfaces that send off more than arrives, at 0, 5, .., 85 deg and at grazing incidence.
 fn energy(scene: &Scene, document: &Document, note: Note) {
     let ranges = scene.sources.iter().flat_map(|source| source.spectrum.range());
     let mut wavelengths: Vec<f64> = ranges.collect();
@@ -95,9 +95,10 @@ fn energy(scene: &Scene, document: &Document, note: Note) {
     let mut told = BTreeSet::new();
     for (index, media) in uses(scene) {
         let surface = &scene.surfaces[index as usize];
-        let at = wavelengths.iter().flat_map(|w| (0..=85).step_by(5).map(move |degrees| (*w, degrees)));
-        let excess = |(wavelength, degrees): (f64, i32)| {
-            let share = share(scene, surface, media, (degrees as f64).to_radians(), wavelength);
+        let angles = || (0..=17).map(|step| 5.0 * f64::from(step)).chain([87.5, 89.0, 89.9]);
+        let at = wavelengths.iter().flat_map(|w| angles().map(move |degrees| (*w, degrees)));
+        let excess = |(wavelength, degrees): (f64, f64)| {
+            let share = share(scene, surface, media, degrees.to_radians(), wavelength);
             // A scattered part above 1 makes what is left to the coating negative: count it alone.
             let scattered = share.diffuse + share.spread;
             (-share.absorbed()).max(scattered - 1.0)
