@@ -1,6 +1,6 @@
 //! Shares that add up on paper, not only in the computer.
 
-/// Per cent of `total` for each row, with as many decimals (2 to 6) as the smallest row needs. What rounding leaves over goes to the
+/// Per cent of `total` for each row, with as many decimals (2 or 3) as the smallest row needs. What rounding leaves over goes to the
 /// largest row, where it is least visible, so that the printed rows add up to exactly 100. Without a positive total: dashes.
 ///
 /// What is not zero but rounds to it is "≈ 0". `rows` must add up to `total`.
@@ -24,7 +24,7 @@ pub fn shares(rows: &[f64], total: f64) -> Vec<String> {
 
 fn decimals(rows: &[f64], total: f64) -> usize {
     let smallest = rows.iter().map(|row| (100.0 * row / total).abs()).filter(|&row| row > 1e-6).fold(100.0, f64::min);
-    (-smallest.log10().floor()).clamp(2.0, 6.0) as usize
+    (-smallest.log10().floor()).clamp(2.0, 3.0) as usize
 }
 
 #[cfg(test)]
