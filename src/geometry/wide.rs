@@ -110,7 +110,7 @@ impl Node {
     }
 }
 
-/// As one machine instruction; no NaN occurs (see `Probe`).
+/// As one machine instruction; no NaN occurs in a ray of numbers (see `Probe`).
 #[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

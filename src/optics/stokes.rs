@@ -120,16 +120,6 @@ pub fn reframe<const V: usize>(light: &mut [Stokes; V], direction: DVec3, from: 
     }
 }
 
-/// The s axis: unit, perpendicular to `direction` and `normal` (unit vectors). At normal incidence, where any
-/// transverse axis is one, `x` (unit, perpendicular to `direction`) is kept.
-pub fn s_axis(direction: DVec3, normal: DVec3, x: DVec3) -> DVec3 {
-    let s = direction.cross(normal);
-    let length = s.length();
-    // Below 1e-12 rad the rounding of the cross product (2e-16) would turn the axis by more than 1e-4 rad, while
-    // R_s and R_p differ there by less than 1e-24.
-    if length > 1e-12 { s / length } else { x }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,13 +146,5 @@ mod tests {
         assert!(close(light[1], start.rotate(0.4)));
         reframe(&mut light, k, to, x);
         assert!(close(light[0], start));
-    }
-
-    #[test]
-    fn the_s_axis_is_transverse_and_in_the_surface() {
-        let k = DVec3::new(0.3, -0.2, -0.9).normalize();
-        let s = s_axis(k, DVec3::Z, DVec3::X);
-        assert!(s.dot(k).abs() < 1e-16 && s.z == 0.0);
-        assert_eq!(s_axis(-DVec3::Z, DVec3::Z, DVec3::Y), DVec3::Y);
     }
 }

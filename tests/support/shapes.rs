@@ -1,5 +1,8 @@
 //! Meshes of simple bodies, mm. Normals point outwards or, for flat ones, along z, unless it says otherwise.
 
+#[path = "../solids/icosphere.rs"]
+mod icosphere;
+
 use super::model::Mesh;
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -69,7 +72,7 @@ pub fn tube(radius: f64, z: [f64; 2], sides: usize) -> Mesh {
 
 /// Closed sphere about the origin: an icosahedron divided in four `levels` times, 20 x 4^levels triangles.
 pub fn sphere(radius: f64, levels: u32, equal: Equal) -> Mesh {
-    let faces = icosphere(levels);
+    let faces = icosphere::icosphere(levels);
     let scale = match equal {
         Equal::Corners => radius,
         Equal::Area => radius * (4.0 * PI / area(&faces)).sqrt(),
@@ -84,31 +87,6 @@ pub enum Equal {
     Corners,
     Area,
     Volume,
-}
-
-fn icosphere(levels: u32) -> Mesh {
-    let g = 0.5 * (1.0 + 5f64.sqrt());
-    let corner = |i: usize| {
-        let (a, b) = ([-1.0, 1.0, -1.0, 1.0][i % 4], [g, g, -g, -g][i % 4]);
-        [DVec3::new(a, b, 0.0), DVec3::new(0.0, a, b), DVec3::new(b, 0.0, a)][i / 4].normalize()
-    };
-    #[rustfmt::skip]
-    const FACES: [[usize; 3]; 20] = [
-        [0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9], [5, 11, 4], [11, 10, 2], [10, 7, 6],
-        [7, 1, 8], [3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10],
-        [8, 6, 7], [9, 8, 1],
-    ];
-    let mut faces: Mesh = FACES.iter().map(|f| f.map(corner)).collect();
-    for _ in 0..levels {
-        faces = faces.into_iter().flat_map(quarter).collect();
-    }
-    faces
-}
-
-fn quarter([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
-    // a + b = b + a: neighbours compute the same bits.
-    let (ab, bc, ca) = ((a + b).normalize(), (b + c).normalize(), (c + a).normalize());
-    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
 /// Sphere about the origin without the cap whose rim has radius `port` about +z: latitudes and longitudes, corners on
