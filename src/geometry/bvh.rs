@@ -1,9 +1,12 @@
-//! All triangles of a scene, and the one question: what does this ray meet next?
+//! All triangles and exact faces of a scene, and the one question: what does this ray meet next?
 //!
 //! The tree of boxes (`wide`) and its leaves (`leaf`) propose in single precision, the exact test decides in double (`shear`).
+//! Exact faces (`exact`) have a tree of their own, of boxes only.
 
 use super::Triangle;
-use super::tree::{Soup, Tree, Units, grow};
+use super::exact::Face;
+use super::leaf::Leaf;
+use super::tree::{Soup, Tree, Units, grow, grow_boxes};
 use glam::DVec3;
 
 /// Triangles that belong together.
@@ -15,12 +18,21 @@ pub struct Body<'a> {
     pub triangles: &'a [[u32; 3]],
     /// How far the vertices may be from where they should be, m: the rounding of the file they came from.
     pub tolerance: f64,
+    /// Exact faces, and the triangles of this body that they stand for: those are never met.
+    pub faces: &'a [Face],
+    pub replaced: &'a [u32],
 }
 
-/// Triangles and a tree of boxes over them. Triangles are numbered through, body after body; objects are bodies.
+/// Triangles and exact faces with trees of boxes over them. Triangles are numbered through, body after body, then the exact
+/// faces; objects are bodies.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    pub(super) tree: Tree,
+    pub(super) tree: Tree<Leaf>,
+    /// Leaves are numbers of faces.
+    pub(super) face_tree: Tree<u32>,
+    pub(super) faces: Vec<Face>,
+    /// Object of each face.
+    face_objects: Vec<u32>,
     /// m
     vertices: Vec<DVec3>,
     records: Vec<Record>,
@@ -51,19 +63,29 @@ impl Bvh {
     pub fn build(bodies: &[Body]) -> Bvh {
         let vertices: Vec<DVec3> = bodies.iter().flat_map(|body| body.vertices).copied().collect();
         let mut records = Vec::with_capacity(bodies.iter().map(|body| body.triangles.len()).sum());
+        let (mut faces, mut face_objects) = (Vec::new(), Vec::new());
+        let mut replaced = vec![false; records.capacity()];
         let mut first = 0;
         for (object, body) in (0..).zip(bodies) {
+            body.replaced.iter().for_each(|triangle| replaced[records.len() + *triangle as usize] = true);
             records.extend(body.triangles.iter().map(|t| Record { vertices: t.map(|v| first + v), object }));
             first += body.vertices.len() as u32;
+            faces.extend(body.faces.iter().cloned());
+            face_objects.resize(faces.len(), object);
         }
         let soup = Soup { vertices: &vertices, triangles: &|triangle: u32| records[triangle as usize].vertices };
         let sound = |triangle: &u32| soup.corners(*triangle).iter().all(|v| v.abs().max_element() <= FARTHEST);
-        let usable: Vec<u32> = (0..records.len() as u32).filter(sound).collect();
-        let bounds = around(usable.iter().flat_map(|triangle| soup.corners(*triangle)));
+        let usable: Vec<u32> = (0..records.len() as u32).filter(|t| !replaced[*t as usize]).filter(sound).collect();
+        let boxes: Vec<[DVec3; 2]> = faces.iter().map(Face::bounds).collect();
+        let corners = usable.iter().flat_map(|triangle| soup.corners(*triangle));
+        let bounds = around(corners.chain(boxes.iter().flatten().copied()));
         let units = Units::new(bounds);
         let tolerances: Vec<f64> = bodies.iter().map(|body| body.tolerance).collect();
         Bvh {
             tree: grow(&units, &usable, &soup),
+            face_tree: grow_boxes(&units, &boxes),
+            faces,
+            face_objects,
             tolerance: tolerances.iter().copied().fold(0.0, f64::max),
             vertices,
             records,
@@ -116,10 +138,18 @@ impl Bvh {
         self.triangle(index).area()
     }
 
-    /// The object it is part of.
+    /// The object that a triangle or an exact face is part of.
     #[inline]
     pub fn object(&self, index: u32) -> u32 {
-        self.records[index as usize].object
+        match self.records.get(index as usize) {
+            Some(record) => record.object,
+            None => self.face_objects[index as usize - self.records.len()],
+        }
+    }
+
+    /// The exact face of a number beyond those of the triangles.
+    pub(super) fn face(&self, index: u32) -> Option<&Face> {
+        self.faces.get((index as usize).checked_sub(self.records.len())?)
     }
 
     /// How far its corners may be from where they should be, m.
@@ -130,7 +160,9 @@ impl Bvh {
 
     /// Memory held, bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.tree.nodes[..])
+        size_of_val(&self.face_tree.nodes[..])
+            + size_of_val(&self.faces[..])
+            + size_of_val(&self.tree.nodes[..])
             + size_of_val(&self.tree.leaves[..])
             + size_of_val(&self.vertices[..])
             + size_of_val(&self.records[..])

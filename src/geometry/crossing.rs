@@ -6,10 +6,10 @@ use smallvec::SmallVec;
 /// Most triangles reported at one place; of more, the nearest.
 pub const MOST_COINCIDENT: usize = 8;
 
-/// One triangle met by a ray.
+/// One triangle or exact face met by a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Its index.
+    /// Its number.
     pub triangle: u32,
     /// The object it is part of.
     pub object: u32,
@@ -50,7 +50,7 @@ pub struct Left {
 /// A triangle that a ray starts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Foot {
-    /// Never met: a flat triangle cannot be met twice in a row.
+    /// Never met if it is flat: it cannot be met twice in a row.
     triangle: u32,
     object: u32,
     /// Whether the ray leaves from its front: direction . normal > 0.

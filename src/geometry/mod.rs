@@ -2,6 +2,7 @@
 
 mod bvh;
 mod crossing;
+pub mod exact;
 pub mod frame;
 mod leaf;
 pub mod mesh;

@@ -20,10 +20,11 @@
 
 use super::bvh::Bvh;
 use super::crossing::{Crossing, Hit, Left, MOST_COINCIDENT};
+use super::exact::Touch;
 use super::leaf::Line;
 use super::shear::{Meeting, Shear};
 use super::wide::{Descent, PAD, Probe};
-use super::{Ray, Triangle};
+use super::Ray;
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -38,16 +39,28 @@ const BEHIND: f64 = 1024.0;
 #[derive(Clone, Copy)]
 struct Candidate {
     number: u32,
-    vertices: [u32; 3],
-    /// Unit.
+    /// Unit, out of the front.
     normal: DVec3,
+    front: bool,
     /// |d . n|, dimensionless.
     cosine: f64,
     /// Along the ray, m, not negative.
     distance: f64,
-    meeting: Meeting,
+    /// Where the ray meets it, m.
+    place: Place,
     /// True if the origin may lie on its plane.
     touched: bool,
+}
+
+/// Where a ray meets something.
+#[derive(Clone, Copy)]
+enum Place {
+    /// At these weights of three vertices.
+    Between([u32; 3], [f64; 3]),
+    /// At this point of an exact face, m.
+    At(DVec3),
+    /// At its origin, which rounding has put beyond what is met.
+    Origin,
 }
 
 impl Candidate {
@@ -55,6 +68,17 @@ impl Candidate {
     fn rank(&self) -> (f64, u32) {
         (self.distance, self.number)
     }
+}
+
+/// The plane in which a ray meets something.
+struct Plane {
+    /// Unit, out of the front.
+    normal: DVec3,
+    /// m
+    point: DVec3,
+    /// Along the ray, m, negative behind the origin.
+    distance: f64,
+    front: bool,
 }
 
 /// The nearest candidates of a descent, in order.
@@ -76,7 +100,8 @@ impl Found {
 
     /// Takes a candidate within the limit, `tolerance` being the greatest of the scene, m.
     fn insert(&mut self, candidate: Candidate, tolerance: f64) {
-        if self.list.iter().any(|c| c.number == candidate.number) {
+        // A triangle may be in two leaves; an exact face is met twice only at two distances.
+        if self.list.iter().any(|c| c.number == candidate.number && c.distance == candidate.distance) {
             return;
         }
         let nearest = self.list.first().is_none_or(|first| candidate.rank() < first.rank());
@@ -135,7 +160,10 @@ impl Bvh {
     /// A point on the first triangle of `left`, moved by what it is known to (see the module) towards the triangle's centroid:
     /// a ray that was reflected on an edge may start beyond it by a rounding, and miss the face behind that edge.
     pub fn inward(&self, point: DVec3, left: &Left) -> DVec3 {
-        let centroid = left.first().map(|triangle| self.triangle(triangle).centroid());
+        let centroid = left.first().map(|foot| match self.face(foot) {
+            Some(face) => face.inner(point),
+            None => self.triangle(foot).centroid(),
+        });
         let towards = centroid.and_then(|centroid| (centroid - point).try_normalize());
         towards.map_or(point, |towards| point + self.delta(point) * towards)
     }
@@ -160,9 +188,36 @@ impl Query<'_> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
             // SAFETY: the processor has just said that it has both.
-            return unsafe { self.search_avx2(probe, advance, found) };
+            unsafe { self.search_avx2(probe, advance, found) };
+        } else {
+            self.descend(probe, advance, found);
         }
+        #[cfg(not(target_arch = "x86_64"))]
         self.descend(probe, advance, found);
+        if !self.bvh.faces.is_empty() {
+            self.search_faces(probe, advance, found);
+        }
+    }
+
+    /// Descends the tree of exact faces.
+    fn search_faces(&self, probe: &Probe, advance: f64, found: &mut Found) {
+        let mut descent = Descent::new(&self.bvh.face_tree.nodes, probe);
+        while let Some(leaf) = descent.next(self.tree_limit(found.limit, advance)) {
+            let face = self.bvh.face_tree.leaves[leaf];
+            let number = (self.bvh.len() + face as usize) as u32;
+            for touch in self.bvh.faces[face as usize].meet(self.ray) {
+                if touch.distance <= found.limit {
+                    let Touch { distance, point, normal, front } = touch;
+                    self.consider(number, Plane { normal, point, distance, front }, Place::At(point), found);
+                }
+            }
+        }
+    }
+
+    /// A distance (m) in tree units from the entry, rounded up; not below zero, where all entries begin.
+    #[inline(always)]
+    fn tree_limit(&self, limit: f64, advance: f64) -> f32 {
+        (((limit - advance) * self.bvh.units.scale).max(0.0) as f32).next_up()
     }
 
     /// The same code compiled for processors of 2013 and later; the same bits, since nothing is contracted.
@@ -174,9 +229,6 @@ impl Query<'_> {
 
     #[inline(always)]
     fn descend(&self, probe: &Probe, advance: f64, found: &mut Found) {
-        let scale = self.bvh.units.scale;
-        // Rounded up; not below zero, where all entries begin.
-        let tree_limit = |limit: f64| (((limit - advance) * scale).max(0.0) as f32).next_up();
         let mut descent = Descent::new(&self.bvh.tree.nodes, probe);
         let mut limit = f32::MAX;
         while let Some(leaf) = descent.next(limit) {
@@ -185,7 +237,7 @@ impl Query<'_> {
             while met != 0 {
                 self.test(leaf.triangle(met.trailing_zeros() as usize), found);
                 met &= met - 1;
-                limit = tree_limit(found.limit);
+                limit = self.tree_limit(found.limit, advance);
             }
         }
     }
@@ -199,38 +251,43 @@ impl Query<'_> {
         let triangle = self.bvh.between(vertices);
         let Some(meeting) = self.shear.meet(&triangle.vertices) else { return };
         if meeting.distance <= found.limit {
-            self.consider(number, vertices, &triangle, meeting, found);
+            let Meeting { distance, weights, front } = meeting;
+            let plane = Plane { normal: triangle.normal(), point: triangle.vertices[0], distance, front };
+            self.consider(number, plane, Place::Between(vertices, weights), found);
         }
     }
 
-    fn consider(&self, number: u32, vertices: [u32; 3], triangle: &Triangle, meeting: Meeting, found: &mut Found) {
-        let normal = triangle.normal();
+    fn consider(&self, number: u32, plane: Plane, place: Place, found: &mut Found) {
+        let Plane { normal, distance, front, .. } = plane;
         let cosine = normal.dot(self.ray.direction).abs();
-        let near = meeting.distance.abs() * cosine <= self.delta;
+        let near = distance.abs() * cosine <= self.delta;
         let foot = if near { self.left.on(self.bvh.object(number)) } else { None };
         let ahead = match foot {
-            Some(foot) => self.goes_on(number, triangle, normal, foot, &meeting),
-            None => meeting.distance > 0.0,
+            Some(foot) => self.goes_on(number, &plane, foot),
+            None => distance > 0.0,
         };
         if ahead {
-            let distance = meeting.distance.max(0.0) + 0.0; // never -0.0
+            let place = if distance < 0.0 { Place::Origin } else { place };
+            let distance = distance.max(0.0) + 0.0; // never -0.0
             let touched = foot.is_some();
-            found
-                .insert(Candidate { number, vertices, normal, cosine, distance, meeting, touched }, self.bvh.tolerance);
+            found.insert(Candidate { number, normal, front, cosine, distance, place, touched }, self.bvh.tolerance);
         }
     }
 
-    /// Whether the ray meets a triangle on whose plane its origin may lie, given what it stands on.
-    fn goes_on(&self, number: u32, plane: &Triangle, normal: DVec3, foot: (u32, bool), meeting: &Meeting) -> bool {
+    /// Whether the ray meets something on whose plane its origin may lie, given what it stands on.
+    fn goes_on(&self, number: u32, plane: &Plane, foot: (u32, bool)) -> bool {
         let (left, side) = foot;
-        let turned = self.left.turned(number, !meeting.front);
-        let behind = -meeting.distance;
+        let turned = self.left.turned(number, !plane.front);
+        let behind = -plane.distance;
         // In a concave corner what was left rises above the plane, on the side where the ray arrives.
-        let upward = if meeting.front { normal } else { -normal };
-        let rises = |v: DVec3| (v - plane.vertices[0]).dot(upward) > self.delta;
-        let concave = || self.bvh.triangle(left).vertices.into_iter().any(rises);
+        let upward = if plane.front { plane.normal } else { -plane.normal };
+        let rises = |v: DVec3| (v - plane.point).dot(upward) > self.delta;
+        let concave = || match self.bvh.face(left) {
+            Some(face) => rises(face.inner(self.ray.origin)),
+            None => self.bvh.triangle(left).vertices.into_iter().any(rises),
+        };
         let ahead = behind < 0.0 || (behind <= BEHIND * self.delta && concave());
-        meeting.front == side && !turned && ahead
+        plane.front == side && !turned && ahead
     }
 
     /// The nearest candidate with those that coincide with it.
@@ -238,7 +295,7 @@ impl Query<'_> {
         let (nearest, others) = found.list.split_first()?;
         let hit = |c: &Candidate| {
             let object = self.bvh.object(c.number);
-            Hit { triangle: c.number, object, front: c.meeting.front, normal: c.normal }
+            Hit { triangle: c.number, object, front: c.front, normal: c.normal }
         };
         let first = hit(nearest);
         let mut hits = SmallVec::from_buf_and_len([first, first], 1);
@@ -251,9 +308,11 @@ impl Query<'_> {
             };
             hits.extend(others.iter().filter(coincides).map(hit).take(MOST_COINCIDENT - 1));
         }
-        let behind = nearest.meeting.distance < 0.0;
-        let at = || self.bvh.between(nearest.vertices).at(nearest.meeting.weights);
-        let point = if behind { self.ray.origin } else { at() };
+        let point = match nearest.place {
+            Place::Between(vertices, weights) => self.bvh.between(vertices).at(weights),
+            Place::At(point) => point,
+            Place::Origin => self.ray.origin,
+        };
         Some(Crossing { distance: nearest.distance, point, hits, cornered: nearest.touched })
     }
 }
@@ -278,9 +337,9 @@ mod tests {
     fn surfaces_nearer_than_their_tolerances_coincide() {
         let [top, touching, below] = [0.0, -1.5e-7, -1e-3].map(corners);
         let bvh = Bvh::build(&[
-            Body { vertices: &top, triangles: &SQUARE, tolerance: 1e-7 },
-            Body { vertices: &touching, triangles: &TURNED, tolerance: 1e-7 },
-            Body { vertices: &below, triangles: &SQUARE, tolerance: 1e-7 },
+            Body { vertices: &top, triangles: &SQUARE, tolerance: 1e-7, faces: &[], replaced: &[] },
+            Body { vertices: &touching, triangles: &TURNED, tolerance: 1e-7, faces: &[], replaced: &[] },
+            Body { vertices: &below, triangles: &SQUARE, tolerance: 1e-7, faces: &[], replaced: &[] },
         ]);
         let crossing = bvh.nearest(&down(2.0), &Left::nothing()).unwrap();
         let met: Vec<_> = crossing.hits.iter().map(|hit| (bvh.object(hit.triangle), hit.front)).collect();
@@ -293,7 +352,7 @@ mod tests {
 
     #[test]
     fn a_ray_that_starts_on_a_surface_it_did_not_leave_does_not_meet_it() {
-        let bvh = Bvh::build(&[Body { vertices: &corners(0.0), triangles: &SQUARE, tolerance: 0.0 }]);
+        let bvh = Bvh::build(&[Body { vertices: &corners(0.0), triangles: &SQUARE, tolerance: 0.0, faces: &[], replaced: &[] }]);
         assert_eq!(bvh.nearest(&down(0.0), &Left::nothing()), None);
         assert_eq!(bvh.nearest(&Ray { origin: DVec3::NAN, direction: DVec3::NAN }, &Left::nothing()), None);
         assert_eq!(Bvh::build(&[]).nearest(&down(1.0), &Left::nothing()), None);

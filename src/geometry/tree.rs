@@ -40,9 +40,9 @@ impl Units {
 
 /// Nodes, the first of them the root, and leaves.
 #[derive(Clone, Debug)]
-pub(super) struct Tree {
+pub(super) struct Tree<L> {
     pub nodes: Vec<Node>,
-    pub leaves: Vec<Leaf>,
+    pub leaves: Vec<L>,
 }
 
 /// Triangles by number.
@@ -61,25 +61,36 @@ impl<F: Fn(u32) -> [u32; 3]> Soup<'_, F> {
 }
 
 /// A tree over triangles with these numbers.
-pub(super) fn grow(units: &Units, triangles: &[u32], soup: &Soup<impl Fn(u32) -> [u32; 3]>) -> Tree {
+pub(super) fn grow(units: &Units, triangles: &[u32], soup: &Soup<impl Fn(u32) -> [u32; 3]>) -> Tree<Leaf> {
     let boxes: Vec<Aabb> = triangles.iter().map(|triangle| padded(units, &soup.corners(*triangle))).collect();
-    if boxes.is_empty() {
-        return Tree { nodes: vec![Node::new(&[])], leaves: Vec::new() };
-    }
     let leaf = |primitives: &[u32]| {
         let held = primitives.iter().map(|primitive| triangles[*primitive as usize]);
         let named = held.map(|triangle| (triangle, (soup.triangles)(triangle)));
         Leaf::new(units, &named.collect::<ArrayVec<_, LEAF>>(), soup.vertices)
     };
-    let built = (!concentric(&boxes)).then(|| {
-        let binary = build_bvh2(&boxes, effort(boxes.len()), &mut Duration::default());
-        collapse(&binary.nodes, &binary.primitive_indices, &leaf)
+    raise(&boxes, LEAF, &leaf)
+}
+
+/// A tree over boxes (m), each a leaf of its own.
+pub(super) fn grow_boxes(units: &Units, boxes: &[[DVec3; 2]]) -> Tree<u32> {
+    let boxes: Vec<Aabb> = boxes.iter().map(|corners| padded(units, corners)).collect();
+    raise(&boxes, 1, &|primitives: &[u32]| primitives[0])
+}
+
+/// A tree over boxes in tree units with up to `most` of them in a leaf.
+fn raise<L>(boxes: &[Aabb], most: usize, leaf: &impl Fn(&[u32]) -> L) -> Tree<L> {
+    if boxes.is_empty() {
+        return Tree { nodes: vec![Node::new(&[])], leaves: Vec::new() };
+    }
+    let built = (!concentric(boxes)).then(|| {
+        let binary = build_bvh2(boxes, effort(boxes.len(), most), &mut Duration::default());
+        collapse(&binary.nodes, &binary.primitive_indices, leaf)
     });
     match built {
         Some((tree, depth)) if depth <= DEEPEST => tree,
         _ => {
-            let (nodes, order) = halve(&boxes);
-            collapse(&nodes, &order, &leaf).0
+            let (nodes, order) = halve(boxes, most);
+            collapse(&nodes, &order, leaf).0
         }
     }
 }
@@ -92,18 +103,20 @@ fn concentric(boxes: &[Aabb]) -> bool {
 }
 
 /// Slower building gives faster tracing; above some hundred thousand triangles the first would take too long.
-fn effort(triangles: usize) -> BvhBuildParams {
-    let preset = if triangles <= 200_000 { BvhBuildParams::very_slow_build() } else { BvhBuildParams::medium_build() };
-    BvhBuildParams { pre_split: false, max_prims_per_leaf: LEAF as u32, collapse_traversal_cost: 8.0, ..preset }
+fn effort(count: usize, most: usize) -> BvhBuildParams {
+    let preset = if count <= 200_000 { BvhBuildParams::very_slow_build() } else { BvhBuildParams::medium_build() };
+    BvhBuildParams { pre_split: false, max_prims_per_leaf: most as u32, collapse_traversal_cost: 8.0, ..preset }
 }
 
-fn padded(units: &Units, vertices: &[DVec3; 3]) -> Aabb {
-    let [a, b, c] = vertices.map(|v| Vec3A::from(units.point(v).as_vec3()));
-    Aabb::new(a.min(b).min(c) - PAD, a.max(b).max(c) + PAD)
+/// The box around some points (m), in tree units.
+fn padded(units: &Units, points: &[DVec3]) -> Aabb {
+    let points = points.iter().map(|v| Vec3A::from(units.point(*v).as_vec3()));
+    let (low, high) = points.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    Aabb::new(low - PAD, high + PAD)
 }
 
 /// Gathers a binary tree into wide nodes by opening the largest box first; also returns the levels of the result.
-fn collapse(binary: &[Bvh2Node], primitives: &[u32], leaf: &impl Fn(&[u32]) -> Leaf) -> (Tree, usize) {
+fn collapse<L>(binary: &[Bvh2Node], primitives: &[u32], leaf: &impl Fn(&[u32]) -> L) -> (Tree<L>, usize) {
     let mut tree = Tree { nodes: vec![Node::new(&[])], leaves: Vec::new() };
     let mut pending = vec![(0usize, 0usize, 1usize)];
     let mut depth = 1;
@@ -144,7 +157,7 @@ fn open(binary: &[Bvh2Node], index: usize) -> ArrayVec<usize, WIDTH> {
 
 /// A binary tree as deep as the logarithm of the count, whatever the boxes: halved along the longest side.
 /// Slower to trace; for boxes that obvhs makes a chain of.
-fn halve(boxes: &[Aabb]) -> (Vec<Bvh2Node>, Vec<u32>) {
+fn halve(boxes: &[Aabb], most: usize) -> (Vec<Bvh2Node>, Vec<u32>) {
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut nodes = vec![Bvh2Node::default()];
     let mut pending = vec![(0usize, 0..boxes.len())];
@@ -152,7 +165,7 @@ fn halve(boxes: &[Aabb]) -> (Vec<Bvh2Node>, Vec<u32>) {
         let part = &mut order[range.clone()];
         let around = part.iter().fold(Aabb::INVALID, |sum, &i| sum.union(&boxes[i as usize]));
         nodes[index] = Bvh2Node::new(around, part.len() as u32, range.start as u32);
-        if part.len() > LEAF {
+        if part.len() > most {
             let axis = around.largest_axis();
             let along = |i: u32| boxes[i as usize].min[axis] + boxes[i as usize].max[axis];
             let middle = part.len() / 2;

@@ -2,6 +2,8 @@
 
 pub mod compile;
 pub mod document;
+pub mod elements;
+pub mod exact;
 pub mod gltf;
 pub mod schema;
 pub mod select;

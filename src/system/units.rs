@@ -147,6 +147,40 @@ quantities! {
     LengthUnit(f64) = unit_alone(LENGTH), "a unit of length, such as \"mm\"";
 }
 
+/// A coefficient of a power series in a length: `"1.2e-5 mm^-3"`, in m^`exponent`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coefficient {
+    pub value: f64,
+    /// Power of the unit of length.
+    pub exponent: i32,
+}
+
+impl FromText for Coefficient {
+    const EXPECTED: &'static str = "a coefficient with a power of a length as its unit, such as \"1.2e-5 mm^-3\"";
+    fn from_text(text: &str) -> Result<Self, String> {
+        let (number, rest) = split_number(text.trim()).ok_or_else(|| format!("{text:?} does not begin with a number"))?;
+        let value = convert(number, ("", 1.0, 0))?;
+        let rest = rest.trim().replace('^', "");
+        if rest.is_empty() {
+            return Ok(Coefficient { value, exponent: 0 });
+        }
+        let letters = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
+        let (name, power) = rest.split_at(letters);
+        let (_, factor, tens) = find(name, LENGTH).map_err(|what| format!("{text:?}: {what}"))?;
+        let exponent = if power.trim().is_empty() { Some(1) } else { power.trim().parse::<i32>().ok() };
+        let exponent = exponent.filter(|e| e.abs() <= 64).ok_or_else(|| format!("{text:?}: {power:?} is no power"))?;
+        // Powers of ten go to the decimal exponent, so that they cost no digit.
+        let scaled = convert(number, ("", 1.0, tens * exponent))? * factor.powi(exponent);
+        Ok(Coefficient { value: scaled, exponent })
+    }
+}
+
+impl<'de> Deserialize<'de> for Coefficient {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        from_string(deserializer)
+    }
+}
+
 /// A number and its unit.
 fn scalar(text: &str, units: &[Unit]) -> Result<f64, String> {
     let (number, rest) = split_number(text.trim())

@@ -71,7 +71,7 @@ pub fn cube(n: usize) -> Vec<Triangle> {
 pub fn bvh(triangles: &[Triangle]) -> Bvh {
     let vertices: Vec<DVec3> = triangles.iter().flat_map(|triangle| triangle.vertices).collect();
     let triangles: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Bvh::build(&[Body { vertices: &vertices, triangles: &triangles, tolerance: 0.0 }])
+    Bvh::build(&[Body { vertices: &vertices, triangles: &triangles, tolerance: 0.0, faces: &[], replaced: &[] }])
 }
 
 pub fn moved(triangles: &[Triangle], by: DVec3) -> Vec<Triangle> {

@@ -1,20 +1,22 @@
 //! The geometry of all files, placed, named and numbered.
 
 use super::Shop;
+use super::exact::NodeFaces;
 use crate::error::Problem;
 use crate::geometry::Body;
 use crate::system::document as written;
+use crate::system::elements;
 use crate::system::gltf::{self, Node};
 use crate::system::select;
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// Every node with triangles. Triangles are numbered through, node after node.
 #[derive(Debug, Default)]
 pub struct Assembly {
     /// Placed in the world, m; names unique.
     pub nodes: Vec<Node>,
-    /// Which entry of `geometry` each node is from.
-    pub file_of: Vec<usize>,
+    /// Which entry of `geometry` each node is from; `None` for elements.
+    pub file_of: Vec<Option<usize>>,
     /// First triangle of each node.
     pub first: Vec<u32>,
     /// Centre of everything, world, m: the origin of scene coordinates.
@@ -27,6 +29,8 @@ pub struct Assembly {
     pub solid_nodes: Vec<usize>,
     /// Parts that no entry selects.
     pub unsaid: Vec<u32>,
+    /// Exact faces of each node.
+    pub exact: Vec<NodeFaces>,
 }
 
 /// Reads and places every geometry file.
@@ -51,7 +55,14 @@ pub fn read(shop: &mut Shop) -> Assembly {
         }
         let solid = file.nodes.into_iter().filter(|node| !node.mesh.triangles.is_empty());
         assembly.nodes.extend(solid.map(|node| place(node, placed)));
-        assembly.file_of.resize(assembly.nodes.len(), i);
+        assembly.file_of.resize(assembly.nodes.len(), Some(i));
+    }
+    for (name, element) in shop.document.system.elements.iter() {
+        match elements::nodes(name, element) {
+            Ok(nodes) => assembly.nodes.extend(nodes),
+            Err(problem) => shop.fault(&format!("elements[{name:?}]"), problem),
+        }
+        assembly.file_of.resize(assembly.nodes.len(), None);
     }
     make_unique(&mut assembly.nodes);
     assembly.number();
@@ -75,6 +86,7 @@ fn place(mut node: Node, placed: &written::Geometry) -> Node {
         *vertex = turn * (placed.unit.0 * *vertex) + placed.at.0;
     }
     let unit = placed.unit.0;
+    node.frame = DAffine3::from_mat3_translation(turn * unit, placed.at.0) * node.frame;
     node.mesh.tolerance *= unit;
     node.mesh.topology.area *= unit * unit;
     node.mesh.topology.volume *= unit * unit * unit;
@@ -108,6 +120,8 @@ impl Assembly {
         let mut next = 0;
         for node in &mut self.nodes {
             node.mesh.vertices.iter_mut().for_each(|vertex| *vertex -= shift);
+            node.exact.iter_mut().for_each(|declared| declared.at -= shift);
+            node.frame.translation -= shift;
             self.first.push(next);
             next += node.mesh.triangles.len() as u32;
         }
@@ -148,10 +162,21 @@ impl Assembly {
         })
     }
 
+    /// The part of every triangle, then of every exact face, as the scene numbers them.
+    pub fn all_parts(&self) -> Vec<u32> {
+        let faces = self.exact.iter().flat_map(|exact| &exact.parts);
+        self.part_of.iter().chain(faces).copied().collect()
+    }
+
     /// What the tree of boxes is built from.
     pub fn bodies(&self) -> Vec<Body<'_>> {
-        let meshes = self.nodes.iter().map(|node| &node.mesh);
-        let body = meshes.map(|m| Body { vertices: &m.vertices, triangles: &m.triangles, tolerance: m.tolerance });
+        let body = self.nodes.iter().zip(&self.exact).map(|(node, exact)| Body {
+            vertices: &node.mesh.vertices,
+            triangles: &node.mesh.triangles,
+            tolerance: node.mesh.tolerance,
+            faces: &exact.faces,
+            replaced: &exact.replaced,
+        });
         body.collect()
     }
 }

@@ -138,7 +138,8 @@ fn solid(
     solids: &mut Vec<Solid>,
 ) -> Option<u16> {
     let named = |state: &u32| last(shop, &states[*state as usize], |s| s.medium.clone());
-    let mut names: Vec<Option<String>> = found.iter().map(named).collect();
+    let own = assembly.nodes[node].medium.clone();
+    let mut names: Vec<Option<String>> = found.iter().map(|state| named(state).or_else(|| own.clone())).collect();
     names.sort();
     names.dedup();
     let name = names.iter().flatten().next()?.clone();
@@ -269,7 +270,7 @@ fn unassigned(shop: &mut Shop, assembly: &Assembly, node: usize, label: &str) {
 }
 
 /// The selector in scene coordinates.
-fn selector(written: &written::Selector, assembly: &Assembly) -> Selector {
+pub(super) fn selector(written: &written::Selector, assembly: &Assembly) -> Selector {
     match written {
         written::Selector::Tag(glob) => Selector::Tag(glob.clone()),
         written::Selector::Node(glob) => Selector::Node(glob.clone()),

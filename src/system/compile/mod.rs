@@ -2,6 +2,7 @@
 
 mod assembly;
 mod assign;
+mod exact;
 mod lights;
 mod models;
 mod receivers;
@@ -82,7 +83,9 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     shop.inputs.insert(system_file, document.sha256.clone());
     let mut assembly = assembly::read(&mut shop);
     let media = models::media(&mut shop);
+    exact::declare(&mut shop, &mut assembly);
     let assigned = assign::assign(&mut shop, &mut assembly, &media);
+    exact::faces(&mut shop, &mut assembly);
     let watched = receivers::detectors(&mut shop, &assembly);
     let sources = lights::sources(&mut shop, &assembly);
     if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
@@ -101,7 +104,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let scene = Scene {
         name: document.system.name.clone().unwrap_or_else(|| stem(document)),
         geometry: Bvh::build(&assembly.bodies()),
-        part_of: assembly.part_of.clone(),
+        part_of: assembly.all_parts(),
         parts,
         surfaces: assigned.surfaces,
         ambient: models::ambient(document),

@@ -47,6 +47,7 @@ pub(super) fn origin() -> Position {
     Position(DVec3::ZERO)
 }
 
-fn unturned() -> Angles {
+/// No rotation.
+pub(super) fn unturned() -> Angles {
     Angles(DVec3::ZERO)
 }

@@ -7,7 +7,9 @@
 mod check;
 mod coating;
 mod detector;
+mod element;
 mod entry;
+mod exact;
 mod geometry;
 mod medium;
 mod names;
@@ -20,6 +22,8 @@ mod tree;
 
 pub use coating::{Coating, Specular};
 pub use detector::{Bins, Detector, Quantity, Receiver};
+pub use element::{Body, Element, Optical};
+pub use exact::{Exact, Form, Relative};
 pub use geometry::{Geometry, Up};
 pub use medium::Medium;
 pub use names::Names;
@@ -46,6 +50,8 @@ pub struct System {
     pub name: Option<String>,
     /// Files with the shapes.
     pub geometry: Vec<Geometry>,
+    /// Shapes written here, by name.
+    pub elements: Names<Element>,
     /// The medium around everything: a name in `media`, or "vacuum".
     pub ambient: String,
     /// Media by name. "vacuum" is always there.

@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 pub const SECTIONS: &[&str] = &[
     "name",
     "geometry",
+    "elements",
     "ambient",
     "media",
     "coatings",
@@ -50,6 +51,7 @@ impl<'a> Reader<'a> {
         let system = System {
             name: self.single(root, "name"),
             geometry,
+            elements: self.map(root, "elements"),
             ambient: self.single(root, "ambient").unwrap_or_else(|| "vacuum".to_owned()),
             media: self.map(root, "media"),
             coatings: self.map(root, "coatings"),

@@ -1,6 +1,7 @@
 //! What the triangles of the geometry are: which ones (selectors), and what they do to light.
 
 use super::coating::Specular;
+use super::exact::Exact;
 use super::geometry::origin;
 use crate::system::units::{Angle, Direction, Position};
 use serde::{Deserialize, Deserializer, de};
@@ -36,6 +37,8 @@ pub struct Surface {
     pub between: Option<(String, String)>,
     /// What is between this part and a glass it touches.
     pub gap: Option<Gap>,
+    /// What the triangles truly are.
+    pub exact: Option<Exact>,
 }
 
 impl Surface {
@@ -54,6 +57,7 @@ impl Surface {
             priority: None,
             between: None,
             gap: None,
+            exact: None,
         }
     }
 }

@@ -23,9 +23,10 @@ mod validate;
 use crate::error::{Problem, Severity};
 use crate::geometry::mesh::{Mesh, Repairs};
 use accessor::Store;
+use crate::system::exact::Declared;
 use container::Container;
 use document::Root;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::path::{Path, PathBuf};
 
 /// Triangles read from one file at most, all instances counted: 36 bytes each, and ids of 32 bits above.
@@ -63,6 +64,12 @@ pub struct Node {
     /// Triangles in the file, before welding dropped any.
     pub read: usize,
     pub repairs: Repairs,
+    /// From the node's coordinates to the world.
+    pub frame: DAffine3,
+    /// What some of its triangles truly are.
+    pub exact: Vec<Declared>,
+    /// A name in `media`, if the node brings one with it.
+    pub medium: Option<String>,
 }
 
 impl Node {

@@ -66,6 +66,9 @@ pub fn read(store: &Store, placed: &Placed, warnings: &mut Vec<Problem>) -> Resu
         tags: soup.tags,
         read: before,
         repairs,
+        frame: map,
+        exact: Vec::new(),
+        medium: None,
     })
 }
 

@@ -109,7 +109,7 @@ fn nodes(scene: &Scene, assembly: &Assembly) -> Vec<NodeFacts> {
 fn parts(scene: &Scene, assembly: &Assembly) -> Vec<PartFacts> {
     let mut triangles = vec![0; scene.parts.len()];
     let mut area = vec![0.0; scene.parts.len()];
-    for (triangle, &part) in scene.part_of.iter().enumerate() {
+    for (triangle, &part) in scene.part_of.iter().enumerate().take(scene.geometry.len()) {
         triangles[part as usize] += 1;
         area[part as usize] += scene.geometry.area(triangle as u32);
     }

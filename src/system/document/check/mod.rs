@@ -4,7 +4,7 @@ mod light;
 mod optics;
 
 use super::tree::Shape;
-use super::{Document, Run, read};
+use super::{Body, Document, Run, read};
 use crate::error::{Problem, did_you_mean};
 use crate::system::units::Wavelength;
 use std::collections::BTreeSet;
@@ -59,6 +59,7 @@ impl Document {
     pub(super) fn checked(&self, sound: bool) -> Vec<Problem> {
         let mut checker = Checker { document: self, problems: Vec::new(), used: BTreeSet::new() };
         checker.geometry();
+        checker.elements();
         checker.media();
         checker.coatings();
         checker.scatter();
@@ -224,6 +225,24 @@ impl<'a> Checker<'a> {
                 Problem::error(format!("{:?} is not a glTF file", geometry.file.display().to_string()))
                     .expecting("a file that ends in .glb or .gltf")
             });
+        }
+    }
+
+    /// Media that elements name; their shapes are judged when they are built.
+    fn elements(&mut self) {
+        let document = self.document;
+        for (name, element) in document.system.elements.iter() {
+            let path = format!("elements[{name:?}].body");
+            match &element.body {
+                Body::Lens { media, .. } => {
+                    let named = media.iter().enumerate();
+                    named.for_each(|(i, medium)| self.refer(Section::Media, medium, &format!("{path}.media[{i}]")));
+                }
+                Body::Plate { medium: Some(medium), .. } | Body::Prism { medium: Some(medium), .. } => {
+                    self.refer(Section::Media, medium, &format!("{path}.medium"));
+                }
+                _ => {}
+            }
         }
     }
 
