@@ -31,7 +31,9 @@ impl Frame {
         if x.length_squared() <= 1e-24 * towards.length_squared() {
             return Frame::from_z(z);
         }
+        // Where `towards` is nearly along z, x is a difference of rounded numbers: once more, or it would lean towards z.
         let x = x.normalize();
+        let x = x - x.dot(z) * z;
         Frame { x, y: z.cross(x), z }
     }
 

@@ -136,6 +136,17 @@ pub fn shot(compiled: &Compiled, rays: &[Ray]) -> Trace {
     })
 }
 
+/// A ray of 1 W of unpolarised light of 550 nm that may start inside a solid, in world coordinates (m), watched.
+pub fn shot_from(compiled: &Compiled, ray: Ray) -> Trace {
+    follow(compiled, |walk| {
+        let ray = Ray { origin: ray.origin - compiled.scene.shift, ..ray };
+        let birth = Birth { ray, from: None, wavelength: 550e-9, transverse: ray.direction.any_orthonormal_vector() };
+        let mut packet = walk.born(0, 0, birth, 1.0, straylight::math::Rng::new(1, 0, 0));
+        packet.solids = compiled.scene.solids_at(ray.origin);
+        walk.history(&mut packet);
+    })
+}
+
 fn follow(compiled: &Compiled, go: impl FnOnce(&mut Walk<1, Seen>)) -> Trace {
     let (scene, settings) = (&compiled.scene, &compiled.settings);
     let (layout, rows) = (scene.layout(0), Rows::default());

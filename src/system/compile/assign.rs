@@ -18,8 +18,14 @@ pub struct Assigned {
     pub solids: Vec<Solid>,
 }
 
-/// Entries that apply to a triangle, in order.
-type Layers = Vec<u16>;
+/// What is said of a triangle.
+#[derive(Clone, Debug, Default)]
+struct State {
+    /// Entries that apply, in order.
+    entries: Vec<u16>,
+    /// Name of the face of an element that it is on.
+    face: Option<String>,
+}
 
 /// Assigns every triangle to a part.
 pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling]) -> Assigned {
@@ -36,7 +42,7 @@ pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling]) -> As
         let names = names(shop, &assembly.nodes[node].name, &found, &states);
         for (state, label) in found.iter().zip(names) {
             let index = assigned.parts.len() as u32;
-            let entries = &states[*state as usize];
+            let entries = &states[*state as usize].entries;
             let part = part(shop, assembly, node, entries, label, solid, media, &mut finishes, &mut assigned.surfaces);
             assigned.parts.push(part);
             if entries.is_empty() {
@@ -50,10 +56,11 @@ pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling]) -> As
     assigned
 }
 
-/// The state (list of entries) of every triangle, and what the states are.
-fn lay(shop: &mut Shop, assembly: &Assembly) -> (Vec<u32>, Vec<Layers>) {
+/// The state of every triangle, and what the states are.
+fn lay(shop: &mut Shop, assembly: &Assembly) -> (Vec<u32>, Vec<State>) {
     let mut layers = vec![0u32; assembly.part_of.len()];
-    let mut states: Vec<Layers> = vec![Vec::new()];
+    let mut states = vec![State::default()];
+    faces_of_elements(assembly, &mut layers, &mut states);
     for (entry, written) in shop.document.system.surfaces.iter().enumerate() {
         let mut next: HashMap<u32, u32> = HashMap::new();
         let selector = selector(&written.on, assembly);
@@ -63,7 +70,7 @@ fn lay(shop: &mut Shop, assembly: &Assembly) -> (Vec<u32>, Vec<Layers>) {
                 let slot = &mut layers[(assembly.first[picked.node] + triangle) as usize];
                 *slot = *next.entry(*slot).or_insert_with(|| {
                     let mut longer = states[*slot as usize].clone();
-                    longer.push(entry as u16);
+                    longer.entries.push(entry as u16);
                     states.push(longer);
                     states.len() as u32 - 1
                 });
@@ -74,6 +81,20 @@ fn lay(shop: &mut Shop, assembly: &Assembly) -> (Vec<u32>, Vec<Layers>) {
         }
     }
     (layers, states)
+}
+
+/// Every named face of an element is a part of its own.
+fn faces_of_elements(assembly: &Assembly, layers: &mut [u32], states: &mut Vec<State>) {
+    for (node, &first) in assembly.nodes.iter().zip(&assembly.first).filter(|(node, _)| node.is_element) {
+        for i in 0..node.mesh.triangles.len() {
+            let face = Some(node.tag(i).to_owned());
+            let known = states.iter().position(|state| state.face == face).unwrap_or_else(|| {
+                states.push(State { face, ..State::default() });
+                states.len() - 1
+            });
+            layers[first as usize + i] = known as u32;
+        }
+    }
 }
 
 /// An entry that selects nothing is a mistake.
@@ -98,18 +119,18 @@ fn nothing(shop: &mut Shop, entry: usize, on: &written::Selector, assembly: &Ass
     }
 }
 
-/// Labels of a node's parts: the node's name, with the name of the last named entry where there are several.
-fn names(shop: &Shop, node: &str, found: &[u32], states: &[Layers]) -> Vec<String> {
+/// Labels of a node's parts: the node's name with the name of the last named entry, or the name of the face of an element.
+fn names(shop: &Shop, node: &str, found: &[u32], states: &[State]) -> Vec<String> {
     let surfaces = &shop.document.system.surfaces;
     let named = |state: &u32| {
-        let entries = states[*state as usize].iter().rev();
+        let entries = states[*state as usize].entries.iter().rev();
         entries.filter_map(|&entry| surfaces[entry as usize].name.clone()).next()
     };
     let mut labels: Vec<String> = Vec::new();
     for state in found {
         let base = match named(state) {
             Some(name) => format!("{node}.{name}"),
-            None => node.to_string(),
+            None => states[*state as usize].face.clone().unwrap_or_else(|| node.to_string()),
         };
         let mut label = base.clone();
         let mut number = 2;
@@ -133,18 +154,18 @@ fn solid(
     assembly: &mut Assembly,
     node: usize,
     found: &[u32],
-    states: &[Layers],
+    states: &[State],
     media: &[Filling],
     solids: &mut Vec<Solid>,
 ) -> Option<u16> {
-    let named = |state: &u32| last(shop, &states[*state as usize], |s| s.medium.clone());
+    let named = |state: &u32| last(shop, &states[*state as usize].entries, |s| s.medium.clone());
     let own = assembly.nodes[node].medium.clone();
     let mut names: Vec<Option<String>> = found.iter().map(|state| named(state).or_else(|| own.clone())).collect();
     names.sort();
     names.dedup();
     let name = names.iter().flatten().next()?.clone();
     let label = assembly.nodes[node].name.clone();
-    let entry = found.iter().flat_map(|&s| &states[s as usize]).copied().max().unwrap_or(0);
+    let entry = found.iter().flat_map(|&s| &states[s as usize].entries).copied().max().unwrap_or(0);
     let path = format!("surfaces[{entry}]");
     if names.len() > 1 {
         let problem = Problem::error(format!("only some faces of `{label}` have the medium `{name}`"));
@@ -170,7 +191,7 @@ fn solid(
         shop.fault(&path, Problem::warning(format!("`{label}` is inside out; its faces were turned over")));
     }
     let medium = media.iter().position(|filling| filling.label == name)? as u16;
-    let priority = found.iter().find_map(|&s| last(shop, &states[s as usize], |s| s.priority)).unwrap_or(0);
+    let priority = found.iter().find_map(|&s| last(shop, &states[s as usize].entries, |s| s.priority)).unwrap_or(0);
     assembly.solid_nodes.push(node);
     solids.push(Solid { label, medium, priority, volume: topology.volume.abs() });
     Some(solids.len() as u16 - 1)

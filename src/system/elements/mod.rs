@@ -93,6 +93,7 @@ fn place(draft: Draft, name: String, family: &str, element: &Element) -> Node {
         repairs,
         exact,
         medium: draft.medium,
+        is_element: true,
     }
 }
 

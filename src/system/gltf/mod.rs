@@ -70,6 +70,8 @@ pub struct Node {
     pub exact: Vec<Declared>,
     /// A name in `media`, if the node brings one with it.
     pub medium: Option<String>,
+    /// True if it was written in the system: its tags name its faces.
+    pub is_element: bool,
 }
 
 impl Node {

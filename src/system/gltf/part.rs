@@ -69,6 +69,7 @@ pub fn read(store: &Store, placed: &Placed, warnings: &mut Vec<Problem>) -> Resu
         frame: map,
         exact: Vec::new(),
         medium: None,
+        is_element: false,
     })
 }
 
