@@ -93,9 +93,12 @@ impl Left {
         self.feet.iter().any(|foot| foot.triangle == triangle)
     }
 
-    /// The first triangle of `object` that the ray starts on, and whether it leaves from its front.
-    pub fn on(&self, object: u32) -> Option<(u32, bool)> {
-        self.feet.iter().find(|foot| foot.object == object).map(|foot| (foot.triangle, foot.front))
+    /// Where the ray stands on `object`: on `number` itself or else on the first of its triangles, and whether it leaves from
+    /// the front.
+    pub fn on(&self, number: u32, object: u32) -> Option<(u32, bool)> {
+        let own = self.feet.iter().find(|foot| foot.triangle == number);
+        let foot = own.or_else(|| self.feet.iter().find(|foot| foot.object == object));
+        foot.map(|foot| (foot.triangle, foot.front))
     }
 
     /// Whether the ray has left this triangle on this side earlier in the same corner.

@@ -260,8 +260,11 @@ impl Query<'_> {
     fn consider(&self, number: u32, plane: Plane, place: Place, found: &mut Found) {
         let Plane { normal, distance, front, .. } = plane;
         let cosine = normal.dot(self.ray.direction).abs();
-        let near = distance.abs() * cosine <= self.delta;
-        let foot = if near { self.left.on(self.bvh.object(number)) } else { None };
+        // An exact face that was left together with others may still lie ahead, by what they may be apart.
+        let met = self.left.has(number);
+        let apart = if met { 2.0 * self.bvh.tolerance } else { 0.0 };
+        let near = distance.abs() * cosine <= self.delta + apart;
+        let foot = if near { self.left.on(number, self.bvh.object(number)) } else { None };
         let ahead = match foot {
             Some(foot) => self.goes_on(number, &plane, foot),
             None => distance > 0.0,
@@ -298,7 +301,7 @@ impl Query<'_> {
             Hit { triangle: c.number, object, front: c.front, normal: c.normal }
         };
         let first = hit(nearest);
-        let mut hits = SmallVec::from_buf_and_len([first, first], 1);
+        let mut hits: SmallVec<[Hit; 2]> = SmallVec::from_buf_and_len([first, first], 1);
         if !others.is_empty() {
             let tolerance = self.bvh.tolerance(first.triangle);
             let coincides = |c: &&Candidate| {
@@ -306,7 +309,13 @@ impl Query<'_> {
                 let gap = (c.distance - nearest.distance) * nearest.cosine;
                 parallel && gap <= tolerance + self.bvh.tolerance(c.number)
             };
-            hits.extend(others.iter().filter(coincides).map(hit).take(MOST_COINCIDENT - 1));
+            for other in others.iter().filter(coincides).map(hit).take(MOST_COINCIDENT - 1) {
+                // An object cannot be met twice in the same sense without being left in between: that is another place.
+                let last = hits.iter().rfind(|met: &&Hit| met.object == other.object);
+                if last.is_none_or(|met| met.front != other.front) {
+                    hits.push(other);
+                }
+            }
         }
         let point = match nearest.place {
             Place::Between(vertices, weights) => self.bvh.between(vertices).at(weights),

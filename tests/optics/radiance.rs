@@ -1,1 +1,143 @@
-//! radiance
+//! Etendue and radiance through exact surfaces.
+
+use crate::lab::{close, shot, system};
+use crate::lenses::{around, ball, form, singlet, through};
+use crate::support::{Case, case::number};
+use glam::DVec3;
+use std::f64::consts::PI;
+use straylight::geometry::Ray;
+use straylight::system::compile::Compiled;
+
+type Phase = [f64; 4];
+
+/// A ray (x, y, L, M) from plane to plane, mm.
+fn mapped(compiled: &Compiled, [x, y, l, m]: Phase, planes: [f64; 2]) -> Phase {
+    let direction = DVec3::new(l, m, (1.0 - l * l - m * m).sqrt());
+    let out = through(compiled, DVec3::new(x, y, planes[0]), direction);
+    let p = out.origin + (planes[1] - out.origin.z) / out.direction.z * out.direction;
+    [p.x, p.y, out.direction.x, out.direction.y]
+}
+
+/// Fourth-order central differences.
+fn jacobian(map: impl Fn(Phase) -> Phase, at: Phase, h: f64) -> [Phase; 4] {
+    std::array::from_fn(|column| {
+        let shifted = |steps: f64| {
+            let mut to = at;
+            to[column] += steps * h;
+            map(to)
+        };
+        let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(shifted);
+        std::array::from_fn(|row| (a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row]) / (12.0 * h))
+    })
+}
+
+/// J^T W J - W, W the symplectic form of (x, y, L, M): zero if etendue is conserved in every plane.
+fn asymmetry(j: &[Phase; 4]) -> f64 {
+    let form = |a: &Phase, b: &Phase| a[0] * b[2] - a[2] * b[0] + a[1] * b[3] - a[3] * b[1];
+    let mut worst = 0f64;
+    for (i, k) in (0..4).flat_map(|i| (0..4).map(move |k| (i, k))) {
+        let wanted = match (i, k) {
+            (0, 2) | (1, 3) => 1.0,
+            (2, 0) | (3, 1) => -1.0,
+            _ => 0.0,
+        };
+        worst = worst.max((form(&j[i], &j[k]) - wanted).abs());
+    }
+    worst
+}
+
+fn determinant(j: &[Phase; 4]) -> f64 {
+    glam::DMat4::from_cols_array_2d(j).determinant()
+}
+
+#[test]
+fn rad_05_etendue_through_a_thick_lens() {
+    let case = Case::load("RAD-05");
+    let lens = singlet(&form(case.setup("/lens/R1")), &form(case.setup("/lens/R2")), case.given("/lens/thickness"), 30.0);
+    let compiled = system(&around(&lens, case.given("/lens/n")), "");
+    let planes = [case.given("/start_plane_z"), case.given("/end_plane_z")];
+    for value in case.values() {
+        let phase = |name: &str| -> Phase {
+            let list = value[name].as_array().expect("a ray");
+            std::array::from_fn(|i| list[i].as_f64().expect("a number"))
+        };
+        let (from, wanted) = (phase("ray_in"), phase("ray_out"));
+        let found = mapped(&compiled, from, planes);
+        (0..4).for_each(|i| close(found[i], wanted[i], 1e-9, &format!("RAD-05 {from:?} [{i}]")));
+        let j = jacobian(|ray| mapped(&compiled, ray, planes), from, 1e-4);
+        close(determinant(&j), 1.0, case.tolerance("abs"), &format!("RAD-05 {from:?} det"));
+        close(asymmetry(&j), 0.0, case.tolerance("abs"), &format!("RAD-05 {from:?} symplectic"));
+    }
+}
+
+/// Etendue through every form of surface, in skew rays.
+#[test]
+fn etendue_is_conserved_by_every_form() {
+    let forms = [
+        "Conic(radius: \"60 mm\", conic: -2.3)",
+        "Conic(radius: \"-60 mm\", conic: 1.5)",
+        "Asphere(radius: \"50 mm\", conic: -0.5, terms: [(4, \"2e-6 mm^-3\"), (3, \"1e-5 mm^-2\"), (6, \"-3e-9 mm^-5\")])",
+        "Polynomial(radius: \"80 mm\", terms: [((2, 0), \"1e-3 mm^-1\"), ((1, 2), \"2e-5 mm^-2\"), ((0, 3), \"1e-5 mm^-2\")])",
+        "Toroid(radius: \"50 mm\", conic: -0.4, terms: [(4, \"1e-6 mm^-3\")], rotation: \"90 mm\")",
+        "Toroid(radius: \"50 mm\")",
+    ];
+    for front in forms {
+        let compiled = system(&around(&singlet(front, "Sphere(radius: \"-70 mm\")", 12.0, 30.0), 1.5168), "");
+        for from in [[2.0, -3.0, 0.02, 0.05], [-8.0, 6.0, 0.06, -0.03], [0.3, 0.2, -0.1, 0.1]] {
+            let j = jacobian(|ray| mapped(&compiled, ray, [-20.0, 60.0]), from, 1e-4);
+            assert!((determinant(&j) - 1.0).abs() < 1e-6 && asymmetry(&j) < 1e-6, "{front} {from:?}: {} {}", determinant(&j), asymmetry(&j));
+        }
+    }
+}
+
+/// What a sphere passes on the direct way at half its radius: T^2, and the radiance behind it is T^2 of that before.
+#[test]
+fn rad_06_basic_radiance_through_a_sphere() {
+    let case = Case::load("RAD-06");
+    let value = case.values().into_iter().find(|v| v["kind"] == "sphere").expect("a sphere");
+    let n = number(&value, "n");
+    let compiled = system(&around(&ball(10.0), n), "");
+    let height = 10.0 * number(&value, "b_over_R");
+    let trace = shot(&compiled, &[Ray { origin: 1e-3 * DVec3::new(0.0, height, -50.0), direction: DVec3::Z }]);
+    let sights = trace.at(&compiled, "lens.front");
+    close(sights[0].angle.to_degrees(), number(&value, "theta_i_deg"), 1e-9, "RAD-06 angle");
+    let direct = trace.seen.escaped.iter().map(|(_, flux)| *flux).fold(0.0, f64::max);
+    close(direct, number(&value, "L_exit_direct_pass"), 1e-9, "RAD-06 sphere T^2");
+    // The bundle keeps its etendue, so radiance is flux: det = 1 through the ball, n^2 inside.
+    let j = jacobian(|ray| mapped(&compiled, ray, [-20.0, 40.0]), [0.0, height, 0.0, 0.0], 1e-4);
+    close(direct * n * n / determinant(&j), number(&value, "L_inside_no_loss") * direct, 1e-6, "RAD-06 n^2 L");
+}
+
+/// The immersed detector sees n^2 T of the hemisphere's radiance: by reversing rays from it, exact surface and all.
+#[test]
+fn rad_07_hemispherical_immersion_lens() {
+    let case = Case::load("RAD-07");
+    let (n, radius) = (case.given("/lens/n"), case.given("/lens/R"));
+    let side = format!("Sphere(radius: \"{radius:?} mm\")");
+    let elements = format!(
+        "{}\"fpa\": (body: Aperture(diameter: \"0 mm\", outer: \"{:?} mm\"), at: \"(0, 0, {radius:?}) mm\"),
+        \"flat\": (body: Aperture(diameter: \"{:?} mm\", outer: \"{:?} mm\"), at: \"(0, 0, {radius:?}) mm\"),
+        \"sky\": (body: Mirror(form: Sphere(radius: \"100 mm\"), diameter: \"200 mm\"), at: \"(0, 0, {:?}) mm\"),",
+        singlet(&side, "Plane", radius, 2.0 * radius),
+        2.0 * case.given("/detector/radius"),
+        2.0 * case.given("/detector/radius"),
+        2.0 * radius,
+        radius - 100.0,
+    );
+    // Only rays that can reach the lens are sent: a cone of sin a = R / 100 from every point of the sky would miss few.
+    let sections = around(&elements, n)
+        .replace("extent: Point, at: \"(0, 0, -1000) mm\",", "extent: Node(name: \"sky\", side: Back),")
+        .replace("Collimated(direction: \"(0, 0, 1)\")", "Lambertian")
+        .replace(crate::lab::CERTAIN, "run: (rays: 4000000, seed: 3, paths: 0),")
+        .replace("default:", "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:");
+    let compiled = system(&sections, "");
+    let results = crate::lab::traced(&compiled);
+    let flux = results.detectors[0].flux_w;
+    let (sky, detector) = (2.0 * PI * 100.0 * 100.0, PI * case.given("/detector/radius").powi(2));
+    // Exitance pi L = 1 W / sky.
+    let gain = sky / detector;
+    let (found, error) = (flux.mean * gain, flux.error * gain);
+    let wanted = case.named("E/(pi L)");
+    println!("RAD-07 E/(pi L) {found:.4} +- {error:.4}, reference {wanted:.4}");
+    assert!(error < 0.02 * wanted && (found - wanted).abs() < 4.0 * error, "{found} +- {error}");
+}

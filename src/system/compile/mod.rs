@@ -85,7 +85,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let media = models::media(&mut shop);
     exact::declare(&mut shop, &mut assembly);
     let assigned = assign::assign(&mut shop, &mut assembly, &media);
-    exact::faces(&mut shop, &mut assembly);
+    exact::mason::faces(&mut shop, &mut assembly);
     let watched = receivers::detectors(&mut shop, &assembly);
     let sources = lights::sources(&mut shop, &assembly);
     if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
