@@ -117,27 +117,27 @@ fn rad_07_hemispherical_immersion_lens() {
     let elements = format!(
         "{}\"fpa\": (body: Aperture(diameter: \"0 mm\", outer: \"{:?} mm\"), at: \"(0, 0, {radius:?}) mm\"),
         \"flat\": (body: Aperture(diameter: \"{:?} mm\", outer: \"{:?} mm\"), at: \"(0, 0, {radius:?}) mm\"),
-        \"sky\": (body: Mirror(form: Sphere(radius: \"100 mm\"), diameter: \"200 mm\"), at: \"(0, 0, {:?}) mm\"),",
+        \"sky\": (body: Mirror(form: Sphere(radius: \"22 mm\"), diameter: \"44 mm\"), at: \"(0, 0, {:?}) mm\"),",
         singlet(&side, "Plane", radius, 2.0 * radius),
         2.0 * case.given("/detector/radius"),
         2.0 * case.given("/detector/radius"),
         2.0 * radius,
-        radius - 100.0,
+        radius - 22.0,
     );
-    // Only rays that can reach the lens are sent: a cone of sin a = R / 100 from every point of the sky would miss few.
+    // A sky close to the lens: its radiance is the same from everywhere, so its size does not matter.
     let sections = around(&elements, n)
         .replace("extent: Point, at: \"(0, 0, -1000) mm\",", "extent: Node(name: \"sky\", side: Back),")
         .replace("Collimated(direction: \"(0, 0, 1)\")", "Lambertian")
-        .replace(crate::lab::CERTAIN, "run: (rays: 4000000, seed: 3, paths: 0),")
+        .replace(crate::lab::CERTAIN, "run: (rays: 600000, seed: 3, paths: 0),")
         .replace("default:", "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:");
     let compiled = system(&sections, "");
     let results = crate::lab::traced(&compiled);
-    let flux = results.detectors[0].flux_w;
-    let (sky, detector) = (2.0 * PI * 100.0 * 100.0, PI * case.given("/detector/radius").powi(2));
+    let flux = &results.detectors["fpa"].flux_w;
+    let (sky, detector) = (2.0 * PI * 22.0 * 22.0, PI * case.given("/detector/radius").powi(2));
     // Exitance pi L = 1 W / sky.
     let gain = sky / detector;
     let (found, error) = (flux.mean * gain, flux.error * gain);
     let wanted = case.named("E/(pi L)");
     println!("RAD-07 E/(pi L) {found:.4} +- {error:.4}, reference {wanted:.4}");
-    assert!(error < 0.02 * wanted && (found - wanted).abs() < 4.0 * error, "{found} +- {error}");
+    assert!(error < 0.03 * wanted && (found - wanted).abs() < 4.0 * error, "{found} +- {error}");
 }

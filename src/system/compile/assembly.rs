@@ -86,7 +86,9 @@ fn place(mut node: Node, placed: &written::Geometry) -> Node {
         *vertex = turn * (placed.unit.0 * *vertex) + placed.at.0;
     }
     let unit = placed.unit.0;
-    node.frame = DAffine3::from_mat3_translation(turn * unit, placed.at.0) * node.frame;
+    // The unit scales what is written in the node's coordinates as well, so it is no part of the frame.
+    let origin = turn * (unit * node.frame.translation) + placed.at.0;
+    node.frame = DAffine3::from_mat3_translation(turn * node.frame.matrix3, origin);
     node.mesh.tolerance *= unit;
     node.mesh.topology.area *= unit * unit;
     node.mesh.topology.volume *= unit * unit * unit;
