@@ -1,6 +1,7 @@
 //! The command line: one file per verb. The only place that prints.
 
 pub mod check;
+pub mod export;
 pub mod ray;
 pub mod run;
 pub mod schema;
@@ -41,6 +42,8 @@ pub enum Verb {
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event
     Ray(ray::RayArgs),
+    /// Write the geometry of a system as glTF
+    Export(export::ExportArgs),
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,

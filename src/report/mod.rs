@@ -26,6 +26,7 @@ mod summary;
 mod text;
 mod write;
 
+pub use atomic::create;
 pub use measured::{below, measured};
 pub use text::text;
 pub use write::{WriteError, write};

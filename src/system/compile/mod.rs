@@ -9,11 +9,13 @@ mod receivers;
 pub mod understanding;
 
 use super::document::Document;
+use super::gltf::Node;
 use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
+use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 pub use understanding::Understanding;
@@ -75,6 +77,22 @@ pub fn understand(document: &Document) -> Result<(Compiled, Understanding), Erro
     let (compiled, assembly) = build(document)?;
     let understanding = understanding::understand(&compiled.scene, &assembly, &compiled.settings);
     Ok((compiled, understanding))
+}
+
+/// The parts of a system where they stand.
+#[derive(Debug)]
+pub struct Placed {
+    /// In scene coordinates, m.
+    pub nodes: Vec<Node>,
+    /// World coordinates minus those of the scene, m.
+    pub shift: DVec3,
+    pub warnings: Vec<Problem>,
+}
+
+/// Reads and places the geometry of a document; everything else must be right as well.
+pub fn geometry(document: &Document) -> Result<Placed, Error> {
+    let (compiled, assembly) = build(document)?;
+    Ok(Placed { nodes: assembly.nodes, shift: assembly.shift, warnings: compiled.warnings })
 }
 
 fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {

@@ -19,6 +19,7 @@ mod scene;
 mod transform;
 mod uri;
 mod validate;
+mod write;
 
 use crate::error::{Problem, Severity};
 use crate::geometry::mesh::{Mesh, Repairs};
@@ -28,6 +29,7 @@ use container::Container;
 use document::Root;
 use glam::{DAffine3, DVec3};
 use std::path::{Path, PathBuf};
+pub use write::glb;
 
 /// Triangles read from one file at most, all instances counted: 36 bytes each, and ids of 32 bits above.
 const MOST_TRIANGLES: usize = 1 << 25;
