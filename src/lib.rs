@@ -41,7 +41,7 @@
 //! ─────────────────────────────────────────────────────────────
 //!                           film
 //! ─────────────────────────────────────────────────────────────
-//!                    geometry     optics
+//!            geometry     optics     prescription
 //! ─────────────────────────────────────────────────────────────
 //!                 error    math    settings
 //! ```
@@ -68,6 +68,7 @@ pub mod math;
 pub mod medium;
 pub mod optics;
 pub mod packet;
+pub mod prescription;
 pub mod report;
 pub mod scene;
 pub mod settings;

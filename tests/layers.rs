@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// blind to each other.
 const LAYERS: [&[&str]; 9] = [
     &["error", "math", "settings"],
-    &["geometry", "optics"],
+    &["geometry", "optics", "prescription"],
     &["film"],
     &["medium", "coating", "bsdf", "packet", "source", "detector"],
     &["surface", "tally"],
