@@ -39,7 +39,7 @@
 //! ─────────────────────────────────────────────────────────────
 //!     medium   coating   bsdf   packet   source   detector
 //! ─────────────────────────────────────────────────────────────
-//!                           film
+//!                      film     import
 //! ─────────────────────────────────────────────────────────────
 //!            geometry     optics     prescription
 //! ─────────────────────────────────────────────────────────────
@@ -64,6 +64,7 @@ pub mod error;
 /// An air film between faces that lie on each other.
 pub mod film;
 pub mod geometry;
+pub mod import;
 pub mod math;
 pub mod medium;
 pub mod optics;

@@ -12,6 +12,9 @@
 //! *Units.* SI. Wavelengths are what the file says, taken as vacuum wavelengths, as glass catalogues take them: 0.03 % between
 //! air and vacuum stay with the author of the file.
 
+// A problem is large because it says much; it is made once, and ends the reading.
+#![allow(clippy::result_large_err)]
+
 mod motion;
 pub mod paraxial;
 mod profile;

@@ -215,7 +215,7 @@ impl Chain {
         };
         let slope = through[0].w / self.n[0];
         let scale = match field {
-            (size, _) if size == 0.0 => 0.0,
+            (0.0, _) => 0.0,
             (size, FieldPoint::ObjectAngle(_)) => size / slope,
             (size, FieldPoint::ObjectHeight(_)) => size / (through[0].y - self.thickness[0] * slope),
             (size, FieldPoint::ImageHeight(_)) => size / image,
