@@ -2,6 +2,12 @@
 
 use super::super::row::{Row, Word, words};
 
+/// The command of a row: three letters say it, more may be written.
+pub fn key(row: &Row) -> String {
+    let key = row.key();
+    if key.len() > 3 && key.chars().all(|c| c.is_ascii_alphabetic()) { key[..3].to_owned() } else { key }
+}
+
 /// The commands of a file, none empty.
 pub fn rows(text: &str) -> Vec<Row> {
     let mut rows = Vec::new();

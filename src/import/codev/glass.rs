@@ -11,7 +11,7 @@ pub fn named(name: &str, private: &[(String, Vec<(f64, f64)>)]) -> Option<Materi
     match upper.as_str() {
         "" => return None,
         "AIR" => return Some(Material::Air),
-        "REFL" => return Some(Material::Mirror),
+        "REFL" | "REFLECT" => return Some(Material::Mirror),
         _ => (),
     }
     if let Some(model) = fictitious(name) {

@@ -1,6 +1,6 @@
 //! CODE V sequence files (`.seq`).
 //!
-//! Commands are parted by line ends and `;`, `!` starts a comment, `&` at the end of a line joins it to the next. `SO`, `S` ... `SI` list
+//! Commands are parted by line ends and `;`, `!` starts a comment, the first three letters of a command say it, `&` at the end of a line joins it to the next. `SO`, `S` ... `SI` list
 //! the surfaces (curvature, or radius after `RDM Y`; thickness; glass); what follows belongs to the last one, or to the one it names
 //! (`CIR S3 5`). Lengths in `DIM` (mm if not said), wavelengths in nm, angles in deg.
 //!
@@ -28,8 +28,8 @@ use surface::Raw;
 use system::System;
 
 /// Commands that say nothing about the optics: file and session, drawing, weights of fields, derivatives, which values vary.
-const HARMLESS: &str = "LEN INI GO WTF CLS DER CCY CCX THC KC GLC AC BC CC DC EC FC GC HC JC XDC YDC ZDC ADC BDC CDC CUC IC OUT DSP STP \
-                        SAV WRL VER RES CAN SPH BAS NOT RFR";
+const HARMLESS: &str =
+    "LEN INI GO WTF CLS DER SPH BAS CCY CCX THC KC GLC AC BC CC DC EC FC GC HC JC XDC YDC ZDC ADC BDC CDC CUC";
 
 /// Commands that change the optics and are not known here.
 const REFUSED: &str =
@@ -72,9 +72,12 @@ struct File {
 
 impl File {
     fn take(&mut self, row: &Row) -> Result<(), Problem> {
-        let key = row.key();
-        if self.system.in_private_glasses() || self.system.take(&key, row, self.unit, &mut self.notes)? {
-            return self.system.private_glass(&key, row);
+        let key = command::key(row);
+        if self.system.in_private_glasses() {
+            return self.system.private_glass(row);
+        }
+        if self.system.take(&key, row, self.unit, &mut self.notes)? {
+            return Ok(());
         }
         if let Some(number) = surface::number(&key, self.surfaces.len()) {
             return self.begin(number, row);

@@ -1,6 +1,7 @@
 //! The commands of a sequence file that concern the whole lens: aperture, fields, wavelengths, private glasses.
 
 use super::super::row::Row;
+use super::command::key;
 use crate::error::Problem;
 use crate::prescription::{Aperture, Field, FieldPoint, Note, Prescription, Surface, Vignetting};
 
@@ -23,16 +24,17 @@ pub struct System {
     pub radii: bool,
     /// Names and indices (wavelength m, index) of `PRV` ... `END`.
     pub glasses: Vec<(String, Vec<(f64, f64)>)>,
+    /// Wavelengths (m) of the private glasses between `PRV` and `END`.
     private: Option<Vec<f64>>,
 }
 
 /// Length of the file's unit, m: `DIM M`, `C` or `I`.
 pub fn unit(rows: &[Row]) -> Result<f64, Problem> {
-    let Some(row) = rows.iter().rfind(|row| row.key() == "DIM") else { return Ok(1e-3) };
+    let Some(row) = rows.iter().rfind(|row| key(row) == "DIM") else { return Ok(1e-3) };
     match row.word(1).unwrap_or_default().to_ascii_uppercase().as_str() {
-        "M" => Ok(1e-3),
-        "C" => Ok(1e-2),
-        "I" => Ok(0.0254),
+        "M" | "MM" => Ok(1e-3),
+        "C" | "CM" => Ok(1e-2),
+        "I" | "IN" => Ok(0.0254),
         other => Err(row.problem(format!("no unit {other:?}")).expecting("M (mm), C (cm) or I (inch)")),
     }
 }
@@ -42,7 +44,7 @@ impl System {
     pub fn take(&mut self, key: &str, row: &Row, unit: f64, notes: &mut Vec<Note>) -> Result<bool, Problem> {
         match key {
             "DIM" => (),
-            "TIT" | "TITLE" => self.name = row.rest(),
+            "TIT" => self.name = row.rest(),
             "RDM" => self.radii = !row.word(1).is_some_and(|word| word.eq_ignore_ascii_case("N")),
             "EPD" | "FNO" | "NA" | "NAO" => self.aperture = Some(aperture(key, row, unit)?),
             "WL" => self.wavelengths = row.numbers("wavelengths, nm")?.iter().map(|w| w * 1e-9).collect(),
@@ -55,6 +57,8 @@ impl System {
             "VLY" => self.vignetting[2] = row.numbers("vignetting factors")?,
             "VUY" => self.vignetting[3] = row.numbers("vignetting factors")?,
             "PRV" => self.private = Some(Vec::new()),
+            "TEM" if row.number(1, "a temperature, C")? == 20.0 => (),
+            "TEM" => notes.push(row.note("indices are not changed with temperature")),
             "ZOO" => notes.push(row.note("several zoom positions; the first is read")),
             _ => return Ok(false),
         }
@@ -65,11 +69,10 @@ impl System {
         self.private.is_some()
     }
 
-    /// A line between `PRV` and `END`: `PWL wavelengths (nm)`, `'NAME' indices`. Others do nothing.
-    pub fn private_glass(&mut self, key: &str, row: &Row) -> Result<(), Problem> {
+    /// A line between `PRV` and `END`: `PWL wavelengths (nm)`, `'NAME' indices`.
+    pub fn private_glass(&mut self, row: &Row) -> Result<(), Problem> {
         let Some(wavelengths) = &mut self.private else { return Ok(()) };
-        match key {
-            "PRV" => (),
+        match row.key().as_str() {
             "END" => self.private = None,
             "PWL" => *wavelengths = row.numbers("wavelengths, nm")?.iter().map(|w| w * 1e-9).collect(),
             _ => {

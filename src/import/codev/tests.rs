@@ -27,6 +27,12 @@ fn a_singlet_is_read_in_si_units() {
 }
 
 #[test]
+fn longer_words_are_the_same_commands() {
+    let long = SINGLET.replace("tit", "title").replace("sto\n", "stop\n").replace("dim m", "dim mm");
+    assert_eq!(parse(&long), parse(SINGLET));
+}
+
+#[test]
 fn radii_stand_where_rdm_says_so() {
     let lens = changed("rdm n", "rdm y").expect("a lens");
     assert_eq!(lens.surfaces[1].profile, Profile::sphere(1.0 / 0.02 / 1e-3));
@@ -100,7 +106,12 @@ fn a_solved_distance_is_used_if_it_stands_there() {
 
 #[test]
 fn what_is_left_out_is_noted_with_its_line() {
-    for (text, words) in [("zoo 3\ngo", "zoom"), ("thm 0.6\ngo", "not translated"), ("xyz 5\ngo", "not known")] {
+    for (text, words) in [
+        ("zoo 3\ngo", "zoom"),
+        ("thm 0.6\ngo", "not translated"),
+        ("xyz 5\ngo", "not known"),
+        ("tem 40\ngo", "temperature"),
+    ] {
         let notes = changed("go", text).expect("a lens").notes;
         assert_eq!((notes.len(), notes[0].line), (1, Some(15)), "{notes:?}");
         assert!(notes[0].text.contains(words), "{notes:?}");

@@ -84,7 +84,7 @@ fn lens(root: &Node) -> Result<Prescription, Problem> {
 /// Length of the file's unit, m.
 fn unit(system: &Node) -> Result<f64, Problem> {
     let node = system.find("_dimensions").map_or_else(|| system.get("dimensions"), Ok)?;
-    match node.text()? {
+    match node.text()?.to_ascii_lowercase().as_str() {
         "mm" => Ok(1e-3),
         "cm" => Ok(1e-2),
         "m" => Ok(1.0),

@@ -7,14 +7,13 @@
 //! beside them; these are used.
 //!
 //! *Coordinate breaks* decentre along x and y and then turn about x, y and z, right-handed, each about the axes the one before
-//! led to; with order flag 1, they turn about z, y, x and then decentre. That sense is the one in which
-//! the chief ray of the test file `HoO-V2C18Ex46.zmx` meets the centre of its detector.
+//! led to; with order flag 1, they turn about z, y, x and then decentre.
 //!
-//! Refused: non-sequential mode, surface types other than those in [`surface`], multiple values that contradict. Noted: several
+//! Refused: non-sequential mode, surface types other than those in [`surface`], tilts in a surface's properties. Noted: several
 //! configurations (the one saved is read), coatings, telecentric object space, temperatures other than 20 C at 1 atm.
 //!
-//! No published description of the format exists; the keys follow the program's manual (OpticStudio User Manual, "Surface types",
-//! "Solves", "System explorer") and files written by it.
+//! No published description of the format exists; the meaning of the keys follows the program's manual (Ansys Zemax OpticStudio User
+//! Guide 2024 R2; "Tilt/Decenter" for the sense of tilts) and files written by it.
 
 mod surface;
 mod system;
@@ -26,9 +25,9 @@ use surface::Raw;
 use system::System;
 
 /// Lines of the system that say nothing about the optics: version, language, drawing, ray aiming, polarisation and
-/// physical-optics settings, names of other files, margins, the texts of notes, weights.
-const HARMLESS: &str = "VERS PFIL LANG GFAC RAIM PUSH SDMA OMMA ROPD HYPR PICB POLS GLRS GSTD NSCD COFN NOTE FWGN FWGT GCLR IDXC \
-                        MAXX PRIV PRES SOLS STRT TITL XWGT YWGT";
+/// physical-optics settings, names of other files, margins, the texts of notes, weights, catalogue data.
+const HARMLESS: &str =
+    "VERS PFIL LANG GFAC RAIM PUSH SDMA OMMA ROPD HYPR PICB POLS GLRS GSTD NSCD COFN NOTE FWGN FWGT DBDT";
 
 /// Reads the text of a file.
 pub fn parse(text: &str) -> Result<Prescription, Vec<Problem>> {

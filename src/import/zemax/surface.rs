@@ -5,9 +5,13 @@
 //! | `STANDARD` | conic | |
 //! | `EVENASPH` | conic + sum of PARM n r^2n | 1 to 8 |
 //! | `ODDASPHE` | conic + sum of PARM n r^n | 1 to 8 |
+//! | `XASPHERE`, `XOSPHERE` | conic + sum of XDAT (n+2) (r/R)^2n or (r/R)^n, n up to XDAT 1, R = XDAT 2 | |
 //! | `TOROIDAL` | the y-z curve, conic + sum of PARM n y^(2n-2), turned at PARM 1 (0: cylinder) | 2 to 8 |
 //! | `PARAXIAL` | ideal thin lens of focal length PARM 1 | |
 //! | `COORDBRK` | axes that move: decentre x, y (1, 2), tilt x, y, z in deg (3, 4, 5), order (6) | |
+//!
+//! Source: Ansys Zemax OpticStudio User Guide 2024 R2, "Standard", "Even Asphere", "Odd Asphere", "Extended Asphere", "Toroidal", "Paraxial",
+//! "Coordinate Break".
 
 use super::super::row::Row;
 use crate::error::{Problem, Span};
@@ -17,10 +21,9 @@ use std::collections::BTreeMap;
 
 /// Lines that say nothing about the optics: drawing, the substrate behind a mirror, names of surfaces, variables, solves and
 /// pickups whose last values stand in their places, physical-optics settings, margins.
-const HARMLESS: &str = "HIDE MIRR SLAB VDSZ VCUR VPAR VCON VXDT PPAR PZUP PCUR PCON MAZH CHAZ EDGE GLCZ POPS FIMP OEMA SCOL BORD PRAM LENS \
-                        CFIN";
+const HARMLESS: &str = "HIDE MIRR SLAB VDSZ VPAR VCON PPAR PZUP PKUP MAZH EDGE POPS FIMP OEMA SCOL";
 
-const TYPES: &str = "STANDARD, EVENASPH, ODDASPHE, TOROIDAL, PARAXIAL or COORDBRK";
+const TYPES: &str = "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, TOROIDAL, PARAXIAL or COORDBRK";
 
 /// A surface as it is written; lengths in m but for the numbered parameters.
 pub struct Raw {
@@ -28,7 +31,9 @@ pub struct Raw {
     unit: f64,
     kind: String,
     curve: Curve,
+    /// `PARM` and `XDAT` by their numbers.
     parameters: BTreeMap<usize, f64>,
+    extra: BTreeMap<usize, f64>,
     glass: Option<Material>,
     surface: Surface,
     /// Centre of all openings, m.
@@ -45,6 +50,7 @@ impl Raw {
             kind: "STANDARD".to_owned(),
             curve: Curve::default(),
             parameters: BTreeMap::new(),
+            extra: BTreeMap::new(),
             glass: None,
             surface: Surface::plane(),
             centre: [0.0; 2],
@@ -67,10 +73,13 @@ impl Raw {
             "PARM" => {
                 self.parameters.insert(row.count(1, "the number of a parameter")?, row.number(2, "its value")?);
             }
-            // Row 1 counts further terms, row 2 is the radius they are measured in.
-            "XDAT" if row.number(2, "its value")? == 0.0 || row.count(1, "a number")? == 2 => (),
             "XDAT" => {
-                return Err(row.problem("further terms of the surface are not known here").expecting("`XDAT 1 0`"));
+                self.extra.insert(row.count(1, "the number of a parameter")?, row.number(2, "its value")?);
+            }
+            "SCBD" if (4..row.words.len()).all(|i| row.number(i, "").is_ok_and(|v| v == 0.0)) => (),
+            "SCBD" => {
+                let hint = "use coordinate breaks instead of tilts in the surface's properties".to_owned();
+                return Err(row.problem("a tilt in the surface's properties").expecting("zeros").hinting(hint));
             }
             "COAT" | "UDAD" | "SPID" => self.notes.push(row.note("not translated")),
             "OBDC" => self.centre = [self.length(row, 1)?, self.length(row, 2)?],
@@ -129,12 +138,19 @@ impl Raw {
         if let (Material::Glass { maker, .. }, [one]) = (&mut surface.material, catalogs) {
             *maker = Some(one.clone());
         }
+        // Row 2 of XDAT is a radius without meaning of its own.
+        if !self.kind.ends_with("SPHERE") && self.extra.iter().any(|(n, value)| *n != 2 && *value != 0.0) {
+            let problem = self.problem(format!("a surface {} with further terms (XDAT)", self.kind));
+            return Err(problem.expecting(format!("{TYPES}; XDAT with XASPHERE and XOSPHERE only")));
+        }
         let mut left = self.parameters.clone();
         let mut parameter = |n: usize| left.remove(&n).unwrap_or_default();
         surface.profile = match self.kind.as_str() {
             "STANDARD" => Profile::Revolved(self.curve.clone()),
             "EVENASPH" => Profile::Revolved(self.with_terms((1..=8).map(|n| (2 * n, parameter(n as usize))))),
             "ODDASPHE" => Profile::Revolved(self.with_terms((1..=8).map(|n| (n, parameter(n as usize))))),
+            "XASPHERE" => Profile::Revolved(self.extended(2)?),
+            "XOSPHERE" => Profile::Revolved(self.extended(1)?),
             "TOROIDAL" => {
                 let radius = parameter(1) * self.unit;
                 let curve = self.with_terms((2..=8).map(|n| (2 * n - 2, parameter(n as usize))));
@@ -170,6 +186,18 @@ impl Raw {
             .filter(|(_, a)| *a != 0.0)
             .map(|(power, coefficient)| Term { power, coefficient: coefficient * self.unit.powi(1 - power as i32) });
         Curve { terms: scaled.collect(), ..self.curve.clone() }
+    }
+
+    /// `XDAT`: number of terms, radius R, coefficients (lengths) of (r/R)^step, (r/R)^(2 step) ...
+    fn extended(&self, step: u32) -> Result<Curve, Problem> {
+        let value = |n: usize| self.extra.get(&n).copied().unwrap_or_default();
+        let (count, radius) = (value(1), value(2));
+        if !(0.0..=240.0).contains(&count) || (count > 0.0 && radius <= 0.0) {
+            let expected = "up to 240 terms (XDAT 1) and a radius above 0 (XDAT 2)";
+            return Err(self.problem(format!("{count} terms over a radius of {radius}")).expecting(expected));
+        }
+        let term = |n: u32| (n * step, value(n as usize + 2) / radius.powi((n * step) as i32));
+        Ok(self.with_terms((1..=count as u32).map(term)))
     }
 
     fn coordinate_break(&self, [x, y, alpha, beta, gamma, order]: [f64; 6]) -> Motion {

@@ -100,6 +100,11 @@ fn polynomial_terms_have_their_powers() {
     let of = |power: u32| [Term { power, coefficient: 2e-6 * 1e-3_f64.powi(1 - power as i32) }];
     assert_eq!(terms("EVENASPH"), of(6));
     assert_eq!(terms("ODDASPHE"), of(3));
+    let extended = changed("TYPE STANDARD\n  CURV", "TYPE XASPHERE\n  XDAT 1 2\n  XDAT 2 10\n  XDAT 4 0.5\n  CURV")
+        .expect("a lens");
+    let Profile::Revolved(curve) = &extended.surfaces[1].profile else { panic!("a surface of revolution") };
+    let plain = Profile::sphere(20.0).at(glam::DVec2::X * 0.005).expect("on the sphere").0;
+    assert!((curve.at(0.005).expect("on the surface").0 - plain - 0.5e-3 * 0.5_f64.powi(4)).abs() < 1e-18);
     let ideal = changed("  TYPE STANDARD\n  CURV", "  TYPE PARAXIAL\n  PARM 1 50\n  CURV").expect("a lens");
     assert_eq!(ideal.surfaces[1].profile, Profile::Thin { power: 1.0 / (50.0 * 1e-3) });
 }
@@ -136,7 +141,9 @@ fn every_defect_is_named_with_its_place() {
         ("CURV 0.02", "CURV", Some(20), "ends too early"),
         ("TYPE STANDARD\n  CURV", "TYPE BINARY_2\n  CURV", Some(17), "BINARY_2"),
         ("TYPE STANDARD\n  CURV", "TYPE PARAXIAL\n  CURV", Some(17), "focal length"),
-        ("  DIAM", "  XDAT 1 3\n  DIAM", Some(23), "further terms"),
+        ("  DIAM", "  XDAT 1 3\n  DIAM", Some(17), "further terms"),
+        ("TYPE STANDARD\n  CURV", "TYPE XASPHERE\n  XDAT 1 3\n  CURV", Some(17), "radius of 0"),
+        ("  DIAM", "  SCBD 1 0 0 0 0 90 0 0\n  DIAM", Some(23), "properties"),
         ("  DIAM", "  IGNR 1\n  DIAM", Some(23), "ignored"),
     ] {
         let problem = changed(from, to).expect_err(to).remove(0);
