@@ -1,8 +1,8 @@
 //! CODE V sequence files (`.seq`).
 //!
-//! Commands are parted by line ends and `;`, `!` starts a comment, the first three letters of a command say it, `&` at the end of a line joins it to the next. `SO`, `S` ... `SI` list
-//! the surfaces (curvature, or radius after `RDM Y`; thickness; glass); what follows belongs to the last one, or to the one it names
-//! (`CIR S3 5`). Lengths in `DIM` (mm if not said), wavelengths in nm, angles in deg.
+//! Commands are parted by line ends and `;`; their first three letters count; `!` starts a comment, `&` at the end of a line joins it to
+//! the next. `SO`, `S` ... `SI` list the surfaces (curvature, or radius after `RDM Y`; thickness; glass); what follows belongs to
+//! the last one, or to the one it names (`CIR S3 5`). Lengths in `DIM` (mm if not said), wavelengths in nm, angles in deg.
 //!
 //! *Pickups* (`PIK`) of curvatures and thicknesses are evaluated. *Solves*: `PIM` keeps the distance that stands in the
 //! file and is refused if none does; others are refused. Thicknesses of 1e10 and more are infinite.
@@ -13,17 +13,17 @@
 //! Refused: global decentres and returns, surface types other than sphere, conic and asphere, gratings. Noted: zoom positions
 //! (the first is read), real image heights (taken as paraxial), words not known.
 //!
-//! Source: the commands as CODE V's reference manual names them (Synopsys, "Lens Data Entry"); files written by it.
+//! The program's manual is not public: the commands are those met in files that it wrote, and the sense of tilts is that
+//! which ray-optics takes in them.
 
 mod command;
 mod glass;
 mod surface;
 mod system;
 
+use super::row::Row;
 use crate::error::Problem;
 use crate::prescription::{Note, Prescription};
-
-use super::row::Row;
 use surface::Raw;
 use system::System;
 

@@ -7,7 +7,7 @@
 //! Left out without a note, because they are derived or drawn: the sections in `DERIVED`, colours, aim points. Refused: diffractive
 //! elements, decentres with a pivot, profiles and media other than those in [`surface`] and [`glass`].
 //!
-//! Source: the attributes as ray-optics 0.9 writes them (its documentation, "Optical model", "Sequential model").
+//! Source: the attributes as ray-optics 0.9 writes them.
 
 mod glass;
 mod node;
@@ -77,6 +77,10 @@ fn lens(root: &Node) -> Result<Prescription, Problem> {
     let fields = fields(&spec.get("field_of_view")?.attributes(), unit, &mut notes)?;
     let unknown = model.names().into_iter().filter(|name| !DERIVED.contains(name) && !USED.contains(name));
     notes.extend(unknown.map(|name| Note { line: None, text: format!("{name}: not known here, not translated") }));
+    let shift = spec.find("defocus").and_then(|defocus| defocus.attributes().find("focus_shift"));
+    if shift.map_or(Ok(0.0), |shift| shift.number())? != 0.0 {
+        notes.push(Note { line: None, text: "defocus: the focus shift is not translated".to_owned() });
+    }
     let name = system.find("title").map(|title| title.text().map(str::to_owned)).transpose()?.unwrap_or_default();
     Ok(Prescription { name, surfaces, stop, aperture, fields, wavelengths, primary, notes })
 }

@@ -83,6 +83,8 @@ fn every_defect_is_named_with_its_path() {
         let problem = changed(from, to).expect_err(to).remove(0);
         assert!(problem.to_string().contains(words), "{to:?}: {problem}");
     }
+    let defocus = r#""defocus": {"attributes": {"focus_shift": 0.1}}, "pupil""#;
+    assert!(changed("\"pupil\"", defocus).expect("a lens").notes[0].text.contains("focus shift"));
     let notes = changed("\"specsheet\"", "\"coatings\"").expect("a lens").notes;
     assert_eq!(notes[0].text, "coatings: not known here, not translated");
 }
