@@ -39,9 +39,9 @@
 //! ─────────────────────────────────────────────────────────────
 //!     medium   coating   bsdf   packet   source   detector
 //! ─────────────────────────────────────────────────────────────
-//!                           film
+//!                      film     import
 //! ─────────────────────────────────────────────────────────────
-//!                    geometry     optics
+//!            geometry     optics     prescription
 //! ─────────────────────────────────────────────────────────────
 //!                 error    math    settings
 //! ```
@@ -64,10 +64,12 @@ pub mod error;
 /// An air film between faces that lie on each other.
 pub mod film;
 pub mod geometry;
+pub mod import;
 pub mod math;
 pub mod medium;
 pub mod optics;
 pub mod packet;
+pub mod prescription;
 pub mod report;
 pub mod scene;
 pub mod settings;

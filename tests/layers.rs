@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 /// blind to each other.
 const LAYERS: [&[&str]; 9] = [
     &["error", "math", "settings"],
-    &["geometry", "optics"],
-    &["film"],
+    &["geometry", "optics", "prescription"],
+    &["film", "import"],
     &["medium", "coating", "bsdf", "packet", "source", "detector"],
     &["surface", "tally"],
     &["scene"],
@@ -35,7 +35,7 @@ const DOORS: [(&str, &[&str]); 22] = [
     ("png", &["report/picture/plot.rs"]),
     ("rand_philox", &["math/rng.rs"]),
     ("ron", &["system/document/", "system/schema.rs"]),
-    ("serde_json", &["report/summary.rs", "system/gltf/", "system/select.rs"]),
+    ("serde_json", &["import/rayoptics/", "report/summary.rs", "system/gltf/", "system/select.rs"]),
     ("serde_path_to_error", &["system/document/entry.rs", "system/gltf/container.rs"]),
     ("sha2", &["system/document/mod.rs", "system/compile/mod.rs"]),
     ("signal-hook", &["cli/stop.rs"]),
