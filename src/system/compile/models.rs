@@ -4,11 +4,13 @@ use super::Shop;
 use crate::bsdf::{self, Bsdf};
 use crate::coating::{self, Coating};
 use crate::error::{Problem, Span};
-use crate::medium::{self, Medium};
+use crate::medium::catalog::Shelf;
+use crate::medium::{self, Medium, agf, page};
 use crate::scene::Filling;
 use crate::surface::{Order, Scattering, Surface};
 use crate::system::document as written;
 use num_complex::Complex64;
+use std::path::Path;
 
 /// The medium that is always there.
 pub const VACUUM: &str = "vacuum";
@@ -18,15 +20,15 @@ pub fn media(shop: &mut Shop) -> Vec<Filling> {
     let vacuum = Filling { label: VACUUM.into(), medium: Box::new(medium::Constant::transparent(1.0)) };
     let mut media = vec![vacuum];
     for (name, written) in shop.document.system.media.iter() {
-        match medium(written) {
-            Some(medium) => media.push(Filling { label: name.into(), medium }),
-            None => shop.fault(&format!("media[{name:?}]"), Problem::error("this table cannot be interpolated")),
-        }
+        media.extend(
+            medium(shop, written, &format!("media[{name:?}]")).map(|medium| Filling { label: name.into(), medium }),
+        );
     }
     media
 }
 
-fn medium(written: &written::Medium) -> Option<Box<dyn Medium>> {
+/// `None`: what is wrong with it has been noted.
+fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<dyn Medium>> {
     Some(match written {
         written::Medium::Constant { n, k, absorption } => {
             let loss = match (k, absorption) {
@@ -42,9 +44,59 @@ fn medium(written: &written::Medium) -> Option<Box<dyn Medium>> {
         written::Medium::Tabulated { wavelength, n, k } => {
             let wavelength: Vec<f64> = wavelength.iter().map(|w| w.0).collect();
             let k = k.clone().unwrap_or_else(|| vec![0.0; n.len()]);
-            Box::new(medium::Tabulated::new(wavelength, n, &k)?)
+            let table = medium::Tabulated::new(wavelength, n, &k);
+            if table.is_none() {
+                shop.fault(path, Problem::error("this table cannot be interpolated"));
+            }
+            Box::new(table?)
+        }
+        written::Medium::Air { temperature, pressure } => {
+            Box::new(medium::Air { temperature: temperature.0, pressure: pressure.0 })
+        }
+        written::Medium::Glass(name) => catalogued(shop, Shelf::Glass, name, path)?,
+        written::Medium::Metal(name) => catalogued(shop, Shelf::Metal, name, path)?,
+        written::Medium::Material(name) => catalogued(shop, Shelf::Material, name, path)?,
+        written::Medium::RefractiveIndexInfo { file } => {
+            let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
+            let page = page::parse(&text, &file.display().to_string());
+            Box::new(read(shop, page, file)?.medium)
+        }
+        written::Medium::Agf { file, glass } => {
+            let text = agf::decode(&load(shop, file, path)?);
+            let glass = agf::parse(&text, glass, &file.display().to_string());
+            Box::new(read(shop, glass, file)?.medium)
         }
     })
+}
+
+/// A medium of the built-in catalogue.
+fn catalogued(shop: &mut Shop, shelf: Shelf, name: &str, path: &str) -> Option<Box<dyn Medium>> {
+    match shelf.find(name).and_then(|entry| entry.medium()) {
+        Ok(medium) => Some(Box::new(medium)),
+        Err(problem) => {
+            shop.fault(path, problem);
+            None
+        }
+    }
+}
+
+/// The bytes of a file that the document names at `path`, noted as an input.
+fn load(shop: &mut Shop, file: &Path, path: &str) -> Option<Vec<u8>> {
+    match shop.document.load(file) {
+        Ok(bytes) => {
+            shop.input(&file.display().to_string(), &bytes);
+            Some(bytes)
+        }
+        Err(problem) => {
+            shop.fault(path, problem);
+            None
+        }
+    }
+}
+
+/// What was read from a file, or its problem noted.
+fn read<T>(shop: &mut Shop, outcome: Result<T, Problem>, file: &Path) -> Option<T> {
+    outcome.map_err(|problem| shop.problems.push(problem.in_file(shop.document.resolve(file)))).ok()
 }
 
 /// The interface that a coating names.
@@ -84,18 +136,9 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
     }
 }
 
-fn table(shop: &mut Shop, file: &std::path::Path, scale: f64, path: &str) -> Option<Box<dyn Bsdf>> {
+fn table(shop: &mut Shop, file: &Path, scale: f64, path: &str) -> Option<Box<dyn Bsdf>> {
     let resolved = shop.document.resolve(file);
-    let text = match std::fs::read(&resolved) {
-        Ok(bytes) => {
-            shop.input(&file.display().to_string(), &bytes);
-            String::from_utf8_lossy(&bytes).into_owned()
-        }
-        Err(error) => {
-            shop.fault(path, Problem::error(format!("{} cannot be read: {error}", file.display())));
-            return None;
-        }
-    };
+    let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
     let table = match bsdf::speos::parse(&text) {
         Ok(table) => table,
         Err(faults) => {

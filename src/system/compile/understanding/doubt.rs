@@ -81,6 +81,16 @@ fn ranges(scene: &Scene, note: Note) {
                 !(index.re.is_finite() && index.im.is_finite() && (index.re > 0.0 || index.im > 0.0))
             }) {
                 note(&path, Problem::error(format!("`{}` has no index at {}", filling.label, nanometres(bad))));
+            } else if let Some([low, high]) = filling.medium.absorption_range()
+                && (from < low * (1.0 - ROUNDING) || to > high * (1.0 + ROUNDING))
+            {
+                let what = format!("the absorption of `{}` is not known for all {light}", filling.label);
+                let hint = format!(
+                    "its table goes from {} to {}; beyond, its end value is held",
+                    nanometres(low),
+                    nanometres(high)
+                );
+                note(&path, Problem::warning(what).hinting(hint));
             }
         }
     }

@@ -2,9 +2,11 @@
 
 use super::{Checker, ROUNDING, Section};
 use crate::error::Problem;
+use crate::medium::catalog::Shelf;
 use crate::system::document::{
     Coating, ExtrasValue, Finish, Medium, Predicate, Scatter, Scattering, Selector, Specular, Surface,
 };
+use std::path::Path;
 
 impl<'a> Checker<'a> {
     pub(super) fn media(&mut self) {
@@ -42,7 +44,31 @@ impl<'a> Checker<'a> {
                     k.iter().enumerate().for_each(|(at, k)| self.not_negative(*k, &format!("{path}.k[{at}]")));
                 }
             }
+            Medium::Air { temperature, pressure } => {
+                let [kelvin, pascal] = [temperature.0, pressure.0];
+                self.range((233.0..=373.0).contains(&kelvin), &format!("{path}.temperature"), "233 K to 373 K");
+                self.range((0.0..=2e5).contains(&pascal), &format!("{path}.pressure"), "0 to 200 kPa");
+            }
+            Medium::Glass(name) => self.catalogued(Shelf::Glass, name, path),
+            Medium::Metal(name) => self.catalogued(Shelf::Metal, name, path),
+            Medium::Material(name) => self.catalogued(Shelf::Material, name, path),
+            Medium::RefractiveIndexInfo { file } => self.file(file, path),
+            Medium::Agf { file, glass } => {
+                self.file(file, path);
+                self.not_empty(glass, &format!("{path}.glass"), "the name of the glass");
+            }
         }
+    }
+
+    /// A name of the built-in catalogue.
+    fn catalogued(&mut self, shelf: Shelf, name: &str, path: &str) {
+        if let Err(problem) = shelf.find(name) {
+            self.push(path, problem);
+        }
+    }
+
+    fn file(&mut self, file: &Path, path: &str) {
+        self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
     }
 
     pub(super) fn coatings(&mut self) {
@@ -88,7 +114,7 @@ impl<'a> Checker<'a> {
                 self.not_negative(*g, &format!("{path}.g"));
             }
             Scatter::Table { file, scale } => {
-                self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
+                self.file(file, path);
                 self.not_negative(*scale, &format!("{path}.scale"));
             }
             Scatter::Sum(parts) => {
