@@ -3,6 +3,7 @@
 mod assembly;
 mod assign;
 mod lights;
+mod media;
 mod models;
 mod receivers;
 pub mod understanding;
@@ -81,7 +82,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let system_file = document.path.file_name().map_or("system".into(), |name| name.to_string_lossy().into_owned());
     shop.inputs.insert(system_file, document.sha256.clone());
     let mut assembly = assembly::read(&mut shop);
-    let media = models::media(&mut shop);
+    let media = media::media(&mut shop);
     let assigned = assign::assign(&mut shop, &mut assembly, &media);
     let watched = receivers::detectors(&mut shop, &assembly);
     let sources = lights::sources(&mut shop, &assembly);
@@ -104,7 +105,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         part_of: assembly.part_of.clone(),
         parts,
         surfaces: assigned.surfaces,
-        ambient: models::ambient(document),
+        ambient: media::ambient(document),
         media,
         solids: assigned.solids,
         sources,

@@ -1,113 +1,30 @@
-//! Media, coatings and scatter models: from what the document says to what light meets.
+//! Coatings and scatter models: from what the document says to what light meets.
 
 use super::Shop;
+use super::media::load;
 use crate::bsdf::{self, Bsdf};
 use crate::coating::{self, Coating};
 use crate::error::{Problem, Span};
-use crate::medium::catalog::Shelf;
-use crate::medium::{self, Medium, agf, page};
 use crate::scene::Filling;
 use crate::surface::{Order, Scattering, Surface};
 use crate::system::document as written;
 use num_complex::Complex64;
 use std::path::Path;
 
-/// The medium that is always there.
-pub const VACUUM: &str = "vacuum";
-
-/// Every medium of the document, after vacuum.
-pub fn media(shop: &mut Shop) -> Vec<Filling> {
-    let vacuum = Filling { label: VACUUM.into(), medium: Box::new(medium::Constant::transparent(1.0)) };
-    let mut media = vec![vacuum];
-    for (name, written) in shop.document.system.media.iter() {
-        media.extend(
-            medium(shop, written, &format!("media[{name:?}]")).map(|medium| Filling { label: name.into(), medium }),
-        );
-    }
-    media
-}
-
-/// `None`: what is wrong with it has been noted.
-fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<dyn Medium>> {
-    Some(match written {
-        written::Medium::Constant { n, k, absorption } => {
-            let loss = match (k, absorption) {
-                (_, Some(alpha)) => medium::Loss::Absorption(alpha.0),
-                (k, None) => medium::Loss::Extinction(k.unwrap_or(0.0)),
-            };
-            Box::new(medium::Constant { n: *n, loss })
-        }
-        written::Medium::Sellmeier { b, c } => {
-            let terms = b.iter().zip(c).map(|(b, c)| (*b, c.0)).collect();
-            Box::new(medium::Sellmeier { terms, range: None })
-        }
-        written::Medium::Tabulated { wavelength, n, k } => {
-            let wavelength: Vec<f64> = wavelength.iter().map(|w| w.0).collect();
-            let k = k.clone().unwrap_or_else(|| vec![0.0; n.len()]);
-            let table = medium::Tabulated::new(wavelength, n, &k);
-            if table.is_none() {
-                shop.fault(path, Problem::error("this table cannot be interpolated"));
-            }
-            Box::new(table?)
-        }
-        written::Medium::Air { temperature, pressure } => {
-            Box::new(medium::Air { temperature: temperature.0, pressure: pressure.0 })
-        }
-        written::Medium::Glass(name) => catalogued(shop, Shelf::Glass, name, path)?,
-        written::Medium::Metal(name) => catalogued(shop, Shelf::Metal, name, path)?,
-        written::Medium::Material(name) => catalogued(shop, Shelf::Material, name, path)?,
-        written::Medium::RefractiveIndexInfo { file } => {
-            let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
-            let page = page::parse(&text, &file.display().to_string());
-            Box::new(read(shop, page, file)?.medium)
-        }
-        written::Medium::Agf { file, glass } => {
-            let text = agf::decode(&load(shop, file, path)?);
-            let glass = agf::parse(&text, glass, &file.display().to_string());
-            Box::new(read(shop, glass, file)?.medium)
-        }
-    })
-}
-
-/// A medium of the built-in catalogue.
-fn catalogued(shop: &mut Shop, shelf: Shelf, name: &str, path: &str) -> Option<Box<dyn Medium>> {
-    match shelf.find(name).and_then(|entry| entry.medium()) {
-        Ok(medium) => Some(Box::new(medium)),
-        Err(problem) => {
-            shop.fault(path, problem);
-            None
-        }
-    }
-}
-
-/// The bytes of a file that the document names at `path`, noted as an input.
-fn load(shop: &mut Shop, file: &Path, path: &str) -> Option<Vec<u8>> {
-    match shop.document.load(file) {
-        Ok(bytes) => {
-            shop.input(&file.display().to_string(), &bytes);
-            Some(bytes)
-        }
-        Err(problem) => {
-            shop.fault(path, problem);
-            None
-        }
-    }
-}
-
-/// What was read from a file, or its problem noted.
-fn read<T>(shop: &mut Shop, outcome: Result<T, Problem>, file: &Path) -> Option<T> {
-    outcome.map_err(|problem| shop.problems.push(problem.in_file(shop.document.resolve(file)))).ok()
-}
-
 /// The interface that a coating names.
-pub fn coating(written: written::Coating) -> Box<dyn Coating> {
+pub fn coating(written: &written::Coating, media: &[Filling]) -> Box<dyn Coating> {
     match written {
         written::Coating::Fresnel => Box::new(coating::Bare),
         written::Coating::Ideal { reflectance, transmittance } => {
-            Box::new(coating::Ideal { reflectance, transmittance })
+            Box::new(coating::Ideal { reflectance: *reflectance, transmittance: *transmittance })
         }
-        written::Coating::Mirror { reflectance } => Box::new(coating::Mirror { reflectance }),
-        written::Coating::Metal { n, k } => Box::new(coating::Metal { index: Complex64::new(n, k) }),
+        written::Coating::Mirror { reflectance } => Box::new(coating::Mirror { reflectance: *reflectance }),
+        written::Coating::Metal { n, k } => Box::new(coating::Metal { index: Complex64::new(*n, *k) }),
+        written::Coating::Opaque { medium } => {
+            // Every name is defined: the document has been checked.
+            let filling = media.iter().find(|filling| filling.label == *medium).unwrap_or(&media[0]);
+            Box::new(coating::Opaque { medium: filling.medium.clone() })
+        }
     }
 }
 
@@ -188,8 +105,8 @@ impl Finish {
     }
 
     /// The surface that light meets.
-    pub fn surface(&self, shop: &mut Shop) -> Surface {
-        let named = |name: &String| shop.document.system.coatings.get(name).copied();
+    pub fn surface(&self, shop: &mut Shop, media: &[Filling]) -> Surface {
+        let named = |name: &String| shop.document.system.coatings.get(name).cloned();
         let specular = match &self.coating {
             Some(name) => named(name),
             None => self.specular.and_then(written::Specular::coating),
@@ -206,13 +123,6 @@ impl Finish {
             written::Scattering::On => Scattering::On,
             written::Scattering::Off => Scattering::Off,
         };
-        Surface::new(self.label(), specular.map(coating), lobes, order, scattering)
+        Surface::new(self.label(), specular.map(|written| coating(&written, media)), lobes, order, scattering)
     }
-}
-
-/// Index of the ambient medium.
-pub fn ambient(document: &written::Document) -> u16 {
-    let system = &document.system;
-    // Vacuum stands before the media of the document.
-    system.media.position(&system.ambient).map_or(0, |position| position as u16 + 1)
 }

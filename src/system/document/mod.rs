@@ -175,6 +175,7 @@ impl Document {
     }
 
     /// Content of a file that the document names. A pipe or a device is refused before it is opened.
+    #[allow(clippy::result_large_err, reason = "built once per run")]
     pub fn load(&self, file: &Path) -> Result<Vec<u8>, Problem> {
         let resolved = self.resolve(file);
         if !resolved.is_file() {

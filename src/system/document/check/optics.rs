@@ -72,21 +72,26 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn coatings(&mut self) {
-        for (name, coating) in self.document.system.coatings.iter() {
-            self.coating(*coating, &format!("coatings[{name:?}]"));
+        let document = self.document;
+        for (name, coating) in document.system.coatings.iter() {
+            let path = format!("coatings[{name:?}]");
+            self.coating(coating, &path);
+            if let Coating::Opaque { medium } = coating {
+                self.refer(Section::Media, medium, &format!("{path}.medium"));
+            }
         }
     }
 
-    fn coating(&mut self, coating: Coating, path: &str) {
+    fn coating(&mut self, coating: &Coating, path: &str) {
         match coating {
-            Coating::Fresnel => {}
+            Coating::Fresnel | Coating::Opaque { .. } => {}
             Coating::Ideal { reflectance, transmittance } => {
-                self.shares(&[("reflectance", reflectance), ("transmittance", transmittance)], path);
+                self.shares(&[("reflectance", *reflectance), ("transmittance", *transmittance)], path);
             }
-            Coating::Mirror { reflectance } => self.fraction(reflectance, &format!("{path}.reflectance")),
+            Coating::Mirror { reflectance } => self.fraction(*reflectance, &format!("{path}.reflectance")),
             Coating::Metal { n, k } => {
-                self.positive(n, &format!("{path}.n"));
-                self.not_negative(k, &format!("{path}.k"));
+                self.positive(*n, &format!("{path}.n"));
+                self.not_negative(*k, &format!("{path}.k"));
             }
         }
     }
@@ -164,7 +169,7 @@ impl<'a> Checker<'a> {
 
     fn specular(&mut self, specular: Option<Specular>, coating: Option<&'a str>, path: &str) {
         if let Some(coating) = specular.and_then(Specular::coating) {
-            self.coating(coating, &format!("{path}.specular"));
+            self.coating(&coating, &format!("{path}.specular"));
         }
         if let Some(name) = coating {
             self.refer(Section::Coatings, name, &format!("{path}.coating"));
