@@ -148,7 +148,7 @@ fn internal_transmittance_becomes_absorption() {
     assert_eq!((glass.n_d, glass.abbe), (Some(1.5168), Some(64.17)));
     let index = glass.medium.printed(587.5618e-9);
     assert!((index.re - 1.5168).abs() < 5e-8);
-    assert_eq!(glass.medium.relative_to.map(|air| air.temperature), Some(293.15));
+    assert_eq!(glass.medium.relative_to.map(|air| air.temperature()), Some(293.15));
     let tau = |nm: f64, mm: f64| {
         (-straylight::medium::absorption(glass.medium.printed(nm * 1e-9), nm * 1e-9) * mm * 1e-3).exp()
     };
@@ -178,7 +178,7 @@ fn a_page_says_what_is_relative_to_air() {
     assert_eq!(flags("CONDITIONS: {n_is_absolute: true}\nPROPERTIES: {nd: 1.5, Vd: 60}\n"), (false, false));
     assert_eq!(flags("SPECS: {n_is_absolute: false, wavelength_is_vacuum: true}\n"), (true, false));
     let kelvin = |text: &str| {
-        with(&format!("CONDITIONS: {{n_is_absolute: false, temperature: {text}}}")).relative_to.map(|a| a.temperature)
+        with(&format!("CONDITIONS: {{n_is_absolute: false, temperature: {text}}}")).relative_to.map(|a| a.temperature())
     };
     assert_eq!(["297", "\"25.0 °C\"", "22 C", "300 K"].map(kelvin), [297.0, 298.15, 295.15, 300.0].map(Some));
 }

@@ -9,8 +9,8 @@
 //! Check: at 633 nm, 20 C, 100 kPa 1e8 (n - 1) = 26824.4. At the d line, 20 C and one atmosphere n = 1.0002724.
 //!
 //! Left out: humidity (50 % at 20 C lower n by 4e-7), absorption.
-//! Source: Ciddor, Appl. Opt. 35, 1566 (1996), eqs. (1), (5), (12) and table 1; within 3e-8 of Edlen, Metrologia 2, 71 (1966),
-//! which glass catalogues use (Schott, TIE-29, 2016, eq. 2).
+//! Source: Ciddor, Appl. Opt. 35, 1566 (1996), eq. (1), table 1 and appendix A; within 3e-8 of Edlen, Metrologia 2, 71 (1966),
+//! on which the formula of glass catalogues rests (Schott, TIE-29, Refractive index and dispersion, 2016).
 
 use super::Medium;
 use num_complex::Complex64;
@@ -28,16 +28,25 @@ const RANGE: [f64; 2] = [185e-9, 1e-3];
 /// Dry air of 450 ppm CO2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Air {
-    /// K.
-    pub temperature: f64,
-    /// Pa.
-    pub pressure: f64,
+    temperature: f64,
+    /// Density over that of standard air, dimensionless.
+    density: f64,
 }
 
 impl Air {
+    /// Air of `temperature` (K, > 0) and `pressure` (Pa).
+    pub fn new(temperature: f64, pressure: f64) -> Air {
+        Air { temperature, density: density(temperature, pressure) / density(ICE + 15.0, ATMOSPHERE) }
+    }
+
     /// Air of one atmosphere at `temperature` (K): what catalogues are relative to.
     pub fn at(temperature: f64) -> Air {
-        Air { temperature, pressure: ATMOSPHERE }
+        Air::new(temperature, ATMOSPHERE)
+    }
+
+    /// K.
+    pub fn temperature(&self) -> f64 {
+        self.temperature
     }
 
     /// n - 1 at vacuum wavelength `wavelength` (m), dimensionless. Below 185 nm that of 185 nm.
@@ -45,7 +54,7 @@ impl Air {
         let wavenumber = 1e-6 / wavelength.max(RANGE[0]);
         let square = wavenumber * wavenumber;
         let standard = 1e-8 * (5_792_105.0 / (238.0185 - square) + 167_917.0 / (57.362 - square));
-        standard * density(self.temperature, self.pressure) / density(ICE + 15.0, ATMOSPHERE)
+        standard * self.density
     }
 }
 
@@ -81,7 +90,7 @@ mod tests {
             (30.0, 100e3, 25937.2),
         ];
         for (celsius, pressure, wanted) in rows {
-            let got = 1e8 * Air { temperature: ICE + celsius, pressure }.refractivity(633e-9);
+            let got = 1e8 * Air::new(ICE + celsius, pressure).refractivity(633e-9);
             assert!((got - wanted).abs() < 0.06, "{celsius} C, {pressure} Pa: {got}, table {wanted}");
         }
     }
@@ -99,6 +108,6 @@ mod tests {
 
     #[test]
     fn without_pressure_air_is_vacuum() {
-        assert_eq!(Air { temperature: ROOM, pressure: 0.0 }.index(550e-9), Complex64::new(1.0, 0.0));
+        assert_eq!(Air::new(ROOM, 0.0).index(550e-9), Complex64::new(1.0, 0.0));
     }
 }

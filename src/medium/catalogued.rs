@@ -13,7 +13,7 @@
 //! Left out: a temperature of the glass other than the catalogue's. Where the index is known and the absorption is not, the end
 //! value of its table is held ([`Medium::absorption_range`] says where that begins).
 //!
-//! Source: Schott, TIE-29 (2016), eqs. (1) to (3).
+//! Source: Schott, TIE-29, Refractive index and dispersion (2016), on relative and absolute indices.
 
 use super::{Air, Medium, Tabulated};
 use num_complex::Complex64;

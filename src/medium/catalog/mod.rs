@@ -84,6 +84,11 @@ impl Shelf {
         }
     }
 
+    /// The medium of a name, with or without its maker or author.
+    pub fn medium(self, name: &str) -> Result<Catalogued, Problem> {
+        self.find(name)?.medium()
+    }
+
     fn unknown(self, name: &str) -> Problem {
         let problem = Problem::error(format!("the built-in catalogue has no {} {name:?}", self.word()));
         let elsewhere = |shelf: &&Shelf| shelf.entries().any(|entry| [entry.name, entry.short()].contains(&name));

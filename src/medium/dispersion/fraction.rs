@@ -5,7 +5,7 @@
 //! lambda in um; c_j in um^2; b_j, a_j in the powers of um that make n^2 dimensionless. refractiveindex.info's formula 4; AGF
 //! formulas 4 (Sellmeier 2), 7 and 8 (Handbook of Optics).
 //!
-//! Source: refractiveindex.info, "Dispersion formulas"; Handbook of Optics II (1995), ch. 33, table 22.
+//! Source: refractiveindex.info, "Dispersion formulas"; Handbook of Optics II (1995), ch. 33.
 
 use super::{MICROMETRES, powers, root};
 use crate::medium::Medium;

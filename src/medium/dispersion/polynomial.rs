@@ -5,7 +5,7 @@
 //! The Schott formula of older catalogues is this one with the exponents 0, 2, -2, -4, -6, -8; refractiveindex.info's formula
 //! 3; AGF formulas 1, 10, 12, 13.
 //!
-//! Source: Schott, Optical Glass (1992), eq. (4); refractiveindex.info, "Dispersion formulas".
+//! Source: Schott's catalogues before 1992; refractiveindex.info, "Dispersion formulas".
 
 use super::{MICROMETRES, powers, root};
 use crate::medium::Medium;

@@ -51,9 +51,7 @@ fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<
             }
             Box::new(table?)
         }
-        written::Medium::Air { temperature, pressure } => {
-            Box::new(medium::Air { temperature: temperature.0, pressure: pressure.0 })
-        }
+        written::Medium::Air { temperature, pressure } => Box::new(medium::Air::new(temperature.0, pressure.0)),
         written::Medium::Glass(name) => catalogued(shop, Shelf::Glass, name, path)?,
         written::Medium::Metal(name) => catalogued(shop, Shelf::Metal, name, path)?,
         written::Medium::Material(name) => catalogued(shop, Shelf::Material, name, path)?,
@@ -71,9 +69,8 @@ fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<
 }
 
 /// A medium of the built-in catalogue.
-#[allow(clippy::result_large_err, reason = "built once per run")]
 fn catalogued(shop: &mut Shop, shelf: Shelf, name: &str, path: &str) -> Option<Box<dyn Medium>> {
-    match shelf.find(name).and_then(|entry| entry.medium()) {
+    match shelf.medium(name) {
         Ok(medium) => Some(Box::new(medium)),
         Err(problem) => {
             shop.fault(path, problem);
