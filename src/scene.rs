@@ -9,6 +9,7 @@ use crate::surface::Surface;
 use crate::tally::Layout;
 use glam::DVec3;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// A compiled system.
 #[derive(Debug)]
@@ -60,7 +61,7 @@ pub enum PartKind {
 #[derive(Debug)]
 pub struct Filling {
     pub label: String,
-    pub medium: Box<dyn Medium>,
+    pub medium: Arc<dyn Medium>,
 }
 
 /// A closed body of one medium.

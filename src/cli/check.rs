@@ -7,6 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::PathBuf;
 use straylight::detector::{Detector, Place};
 use straylight::error::Error;
+use straylight::medium::absorption;
 use straylight::scene::Scene;
 use straylight::source::angular::Pattern;
 use straylight::source::extent::{Extent, Outline};
@@ -42,6 +43,7 @@ pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
     let sections = [
         head(scene, &facts),
         nodes(&facts.nodes),
+        media(scene),
         parts(&facts),
         budgets(&facts.budgets),
         sources(scene, &facts.beams),
@@ -117,6 +119,35 @@ fn neighbours(node: &NodeFacts) -> String {
 fn few(names: &[String]) -> String {
     let more = if names.len() > 3 { format!(" and {} more", names.len() - 3) } else { String::new() };
     if names.is_empty() { "-".into() } else { names[..names.len().min(3)].join(", ") + &more }
+}
+
+/// Index and absorption of every medium at the wavelengths of the sources.
+fn media(scene: &Scene) -> String {
+    let of = |source: &Source| match &source.spectrum {
+        Spectrum::Lines(lines) => lines.iter().map(|line| line.0).collect(),
+        other => other.range().to_vec(),
+    };
+    let mut wavelengths: Vec<f64> = scene.sources.iter().flat_map(of).collect();
+    wavelengths.sort_by(f64::total_cmp);
+    wavelengths.dedup();
+    let heading = ["medium", "vacuum nm", "n", "k", "absorption /mm", "data nm", "from"];
+    let mut table = Table::new(heading, &[1, 2, 3, 4]);
+    let rows = scene.media.iter().flat_map(|filling| wavelengths.iter().map(move |wavelength| (filling, *wavelength)));
+    for (filling, wavelength) in rows.clone().take(MOST) {
+        let index = filling.medium.index(wavelength);
+        let range =
+            filling.medium.range().map(|range| range.map(|wavelength| digits(1e9 * wavelength, 6)).join(" .. "));
+        table.row([
+            filling.label.clone(),
+            digits(1e9 * wavelength, 7),
+            digits(index.re, 8),
+            digits(index.im, 5),
+            digits(1e-3 * absorption(index, wavelength), 5),
+            range.unwrap_or_else(|| "-".into()),
+            filling.medium.origin().unwrap_or("-").into(),
+        ]);
+    }
+    section("Media", &table, rows.count())
 }
 
 fn parts(facts: &Understanding) -> String {

@@ -4,6 +4,7 @@ pub mod bare;
 pub mod ideal;
 pub mod metal;
 pub mod mirror;
+pub mod opaque;
 
 use crate::optics::{Incidence, Split};
 
@@ -11,6 +12,7 @@ pub use bare::Bare;
 pub use ideal::Ideal;
 pub use metal::Metal;
 pub use mirror::Mirror;
+pub use opaque::Opaque;
 
 /// What a surface does to the specular part of light.
 pub trait Coating: Send + Sync + std::fmt::Debug {

@@ -5,9 +5,8 @@
 //! n, k dimensionless; alpha in 1/m (flux falls as exp(-alpha path)); lambda vacuum wavelength, m.
 //! Left out: dispersion.
 
-use super::Medium;
+use super::{Medium, extinction};
 use num_complex::Complex64;
-use std::f64::consts::PI;
 
 /// What a constant medium takes from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +36,7 @@ impl Medium for Constant {
     fn index(&self, wavelength: f64) -> Complex64 {
         let k = match self.loss {
             Loss::Extinction(k) => k,
-            Loss::Absorption(alpha) => alpha * wavelength / (4.0 * PI),
+            Loss::Absorption(alpha) => extinction(alpha, wavelength),
         };
         Complex64::new(self.n, k)
     }

@@ -58,6 +58,7 @@ const IRRADIANCE: &[Unit] = &[
     ("mW/mm2", 1.0, 3),
 ];
 const TEMPERATURE: &[Unit] = &[("K", 1.0, 0)];
+const PRESSURE: &[Unit] = &[("Pa", 1.0, 0), ("hPa", 1.0, 2), ("kPa", 1.0, 3), ("mbar", 1.0, 2), ("bar", 1.0, 5)];
 
 /// What can be read from the text of one RON string.
 pub trait FromText: Sized {
@@ -137,6 +138,8 @@ quantities! {
     Irradiance(f64) = scalar(IRRADIANCE), "an irradiance with its unit, such as \"1361 W/m2\"";
     /// A temperature, K.
     Temperature(f64) = scalar(TEMPERATURE), "a temperature in kelvin, such as \"5778 K\"";
+    /// A pressure, Pa.
+    Pressure(f64) = scalar(PRESSURE), "a pressure with its unit, such as \"1013.25 hPa\"";
     /// A point or a displacement, m.
     Position(DVec3) = triple(LENGTH), "three lengths with one unit, such as \"(0, 0, 120) mm\"";
     /// Three angles about x, y and z, rad.

@@ -2,7 +2,8 @@
 
 use crate::reference::{case, close, number, values};
 use glam::DVec3;
-use straylight::medium::{Constant, Loss, Medium, Sellmeier, absorption};
+use straylight::medium::catalog::Shelf;
+use straylight::medium::{Catalogued, Constant, Loss, Medium, Sellmeier, absorption};
 use straylight::optics::fresnel;
 use straylight::optics::refraction::refract;
 
@@ -11,11 +12,20 @@ fn n_bk7() -> Sellmeier {
     Sellmeier { terms: terms.iter().map(|(b, c)| (*b, c * 1e-12)).collect(), range: None }
 }
 
+fn catalogued(shelf: Shelf, name: &str) -> Catalogued {
+    shelf.medium(name).unwrap_or_else(|problem| panic!("{problem}"))
+}
+
+/// The formula typed in, and the built-in catalogue at its own wavelengths.
 #[test]
 fn dis_01_n_bk7() {
+    let (typed, built_in) = (n_bk7(), catalogued(Shelf::Glass, "N-BK7"));
+    indices_of_n_bk7(&|nm| typed.index(nm * 1e-9).re);
+    indices_of_n_bk7(&|nm| built_in.printed(nm * 1e-9).re);
+}
+
+fn indices_of_n_bk7(n: &dyn Fn(f64) -> f64) {
     let reference = &values(&case("DIS-01"))[0];
-    let glass = n_bk7();
-    let n = |nm: f64| glass.index(nm * 1e-9).re;
     for (name, nm) in [
         ("n_F", 486.1327),
         ("n_d", 587.5618),
@@ -45,6 +55,15 @@ fn dis_02_prisms() {
         let case = case(id);
         let apex = number(&case["setup"], "apex_deg").to_radians();
         let values = values(&case);
+        let glass = catalogued(Shelf::Glass, case["setup"]["glass"].as_str().expect("a name"));
+        for v in values.iter().filter(|v| v["n"].is_number()) {
+            let nm = match v["line"].as_str() {
+                Some("F") => 486.1327,
+                Some("d") => 587.5618,
+                _ => 656.2725,
+            };
+            close(glass.printed(nm * 1e-9).re, number(v, "n"), 1e-9, "index of the catalogue");
+        }
         let n_d = number(values.iter().find(|v| v["line"] == "d").expect("d"), "n");
         for v in &values {
             if let Some(minimum) = v["delta_min_deg"].as_f64() {
@@ -80,5 +99,17 @@ fn vol_05_beer_lambert_on_oblique_paths() {
             let p = a.transmitted.p.norm_sqr() * b.transmitted.p.norm_sqr();
             close(0.5 * (s + p) * internal, number(&v, "first_pass_T_unpol"), 1e-12, "first pass");
         }
+    }
+}
+
+/// The reference took its indices from the same pages, interpolated linearly at 632.8 nm; the catalogue keeps six digits.
+#[test]
+fn fre_06_metals_of_the_catalogue() {
+    for (name, page) in [("Al 632.8nm", "Al:McPeak"), ("Au 632.8nm", "Au:Johnson")] {
+        let index = catalogued(Shelf::Metal, page).index(632.8e-9);
+        let values = values(&case("FRE-06"));
+        let reference = values.iter().find(|v| v["metal"] == name).expect("the metal");
+        close(index.re, number(reference, "n"), 5e-6, name);
+        close(index.im, number(reference, "k"), 5e-6, name);
     }
 }

@@ -224,7 +224,7 @@ fn part(
         }
         let known = finishes.iter().position(|known| *known == finish);
         known.unwrap_or_else(|| {
-            surfaces.push(finish.surface(shop));
+            surfaces.push(finish.surface(shop, media));
             finishes.push(finish);
             finishes.len() - 1
         }) as u32

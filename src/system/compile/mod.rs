@@ -4,6 +4,7 @@ mod assembly;
 mod assign;
 mod exact;
 mod lights;
+mod media;
 mod models;
 mod receivers;
 pub mod understanding;
@@ -100,7 +101,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let system_file = document.path.file_name().map_or("system".into(), |name| name.to_string_lossy().into_owned());
     shop.inputs.insert(system_file, document.sha256.clone());
     let mut assembly = assembly::read(&mut shop);
-    let media = models::media(&mut shop);
+    let media = media::media(&mut shop);
     exact::declare(&mut shop, &mut assembly);
     let assigned = assign::assign(&mut shop, &mut assembly, &media);
     exact::mason::faces(&mut shop, &mut assembly);
@@ -125,7 +126,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         part_of: assembly.all_parts(),
         parts,
         surfaces: assigned.surfaces,
-        ambient: models::ambient(document),
+        ambient: media::ambient(document),
         media,
         solids: assigned.solids,
         sources,

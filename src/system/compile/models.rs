@@ -1,61 +1,30 @@
-//! Media, coatings and scatter models: from what the document says to what light meets.
+//! Coatings and scatter models: from what the document says to what light meets.
 
 use super::Shop;
+use super::media::load;
 use crate::bsdf::{self, Bsdf};
 use crate::coating::{self, Coating};
 use crate::error::{Problem, Span};
-use crate::medium::{self, Medium};
 use crate::scene::Filling;
 use crate::surface::{Order, Scattering, Surface};
 use crate::system::document as written;
 use num_complex::Complex64;
-
-/// The medium that is always there.
-pub const VACUUM: &str = "vacuum";
-
-/// Every medium of the document, after vacuum.
-pub fn media(shop: &mut Shop) -> Vec<Filling> {
-    let vacuum = Filling { label: VACUUM.into(), medium: Box::new(medium::Constant::transparent(1.0)) };
-    let mut media = vec![vacuum];
-    for (name, written) in shop.document.system.media.iter() {
-        match medium(written) {
-            Some(medium) => media.push(Filling { label: name.into(), medium }),
-            None => shop.fault(&format!("media[{name:?}]"), Problem::error("this table cannot be interpolated")),
-        }
-    }
-    media
-}
-
-fn medium(written: &written::Medium) -> Option<Box<dyn Medium>> {
-    Some(match written {
-        written::Medium::Constant { n, k, absorption } => {
-            let loss = match (k, absorption) {
-                (_, Some(alpha)) => medium::Loss::Absorption(alpha.0),
-                (k, None) => medium::Loss::Extinction(k.unwrap_or(0.0)),
-            };
-            Box::new(medium::Constant { n: *n, loss })
-        }
-        written::Medium::Sellmeier { b, c } => {
-            let terms = b.iter().zip(c).map(|(b, c)| (*b, c.0)).collect();
-            Box::new(medium::Sellmeier { terms, range: None })
-        }
-        written::Medium::Tabulated { wavelength, n, k } => {
-            let wavelength: Vec<f64> = wavelength.iter().map(|w| w.0).collect();
-            let k = k.clone().unwrap_or_else(|| vec![0.0; n.len()]);
-            Box::new(medium::Tabulated::new(wavelength, n, &k)?)
-        }
-    })
-}
+use std::path::Path;
 
 /// The interface that a coating names.
-pub fn coating(written: written::Coating) -> Box<dyn Coating> {
+pub fn coating(written: &written::Coating, media: &[Filling]) -> Box<dyn Coating> {
     match written {
         written::Coating::Fresnel => Box::new(coating::Bare),
         written::Coating::Ideal { reflectance, transmittance } => {
-            Box::new(coating::Ideal { reflectance, transmittance })
+            Box::new(coating::Ideal { reflectance: *reflectance, transmittance: *transmittance })
         }
-        written::Coating::Mirror { reflectance } => Box::new(coating::Mirror { reflectance }),
-        written::Coating::Metal { n, k } => Box::new(coating::Metal { index: Complex64::new(n, k) }),
+        written::Coating::Mirror { reflectance } => Box::new(coating::Mirror { reflectance: *reflectance }),
+        written::Coating::Metal { n, k } => Box::new(coating::Metal { index: Complex64::new(*n, *k) }),
+        written::Coating::Opaque { medium } => {
+            // Every name is defined: the document has been checked.
+            let filling = media.iter().find(|filling| filling.label == *medium).unwrap_or(&media[0]);
+            Box::new(coating::Opaque { medium: filling.medium.clone() })
+        }
     }
 }
 
@@ -84,18 +53,9 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
     }
 }
 
-fn table(shop: &mut Shop, file: &std::path::Path, scale: f64, path: &str) -> Option<Box<dyn Bsdf>> {
+fn table(shop: &mut Shop, file: &Path, scale: f64, path: &str) -> Option<Box<dyn Bsdf>> {
     let resolved = shop.document.resolve(file);
-    let text = match std::fs::read(&resolved) {
-        Ok(bytes) => {
-            shop.input(&file.display().to_string(), &bytes);
-            String::from_utf8_lossy(&bytes).into_owned()
-        }
-        Err(error) => {
-            shop.fault(path, Problem::error(format!("{} cannot be read: {error}", file.display())));
-            return None;
-        }
-    };
+    let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
     let table = match bsdf::speos::parse(&text) {
         Ok(table) => table,
         Err(faults) => {
@@ -145,8 +105,8 @@ impl Finish {
     }
 
     /// The surface that light meets.
-    pub fn surface(&self, shop: &mut Shop) -> Surface {
-        let named = |name: &String| shop.document.system.coatings.get(name).copied();
+    pub fn surface(&self, shop: &mut Shop, media: &[Filling]) -> Surface {
+        let named = |name: &String| shop.document.system.coatings.get(name).cloned();
         let specular = match &self.coating {
             Some(name) => named(name),
             None => self.specular.and_then(written::Specular::coating),
@@ -163,13 +123,6 @@ impl Finish {
             written::Scattering::On => Scattering::On,
             written::Scattering::Off => Scattering::Off,
         };
-        Surface::new(self.label(), specular.map(coating), lobes, order, scattering)
+        Surface::new(self.label(), specular.map(|written| coating(&written, media)), lobes, order, scattering)
     }
-}
-
-/// Index of the ambient medium.
-pub fn ambient(document: &written::Document) -> u16 {
-    let system = &document.system;
-    // Vacuum stands before the media of the document.
-    system.media.position(&system.ambient).map_or(0, |position| position as u16 + 1)
 }

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 /// A named coating, used by `coating:` of a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Coating {
     /// The bare interface of its two media.
@@ -26,6 +26,11 @@ pub enum Coating {
         n: f64,
         /// Extinction coefficient, dimensionless, >= 0.
         k: f64,
+    },
+    /// An opaque layer of a medium: a metal with its dispersion.
+    Opaque {
+        /// A name in `media`.
+        medium: String,
     },
 }
 

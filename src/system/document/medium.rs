@@ -1,7 +1,9 @@
 //! What fills a solid.
 
-use crate::system::units::{Absorption, Wavelength, WavelengthSquared};
+use crate::medium::air::{ATMOSPHERE, ROOM};
+use crate::system::units::{Absorption, Pressure, Temperature, Wavelength, WavelengthSquared};
 use serde::Deserialize;
+use std::path::{Path, PathBuf};
 
 /// A homogeneous medium: its complex refractive index n + ik over the vacuum wavelength.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -32,4 +34,49 @@ pub enum Medium {
         /// Extinction coefficients, dimensionless, >= 0; one per wavelength, or all 0 if not given.
         k: Option<Vec<f64>>,
     },
+    /// Dry air; catalogue glasses are relative to it.
+    Air {
+        /// Temperature, K; 293.15 K if not given.
+        #[serde(default = "room")]
+        temperature: Temperature,
+        /// Pressure, Pa; 101325 Pa if not given.
+        #[serde(default = "atmosphere")]
+        pressure: Pressure,
+    },
+    /// A glass of the built-in catalogue: "N-BK7", or with its maker "SCHOTT:N-BK7".
+    Glass(String),
+    /// A metal of the built-in catalogue: "Al", or with its author "Al:Rakic".
+    Metal(String),
+    /// A crystal or film material of the built-in catalogue: "CaF2", or with its author "TiO2:Siefke".
+    Material(String),
+    /// A page of refractiveindex.info.
+    RefractiveIndexInfo {
+        /// YAML file, relative to the system file.
+        file: PathBuf,
+    },
+    /// A glass of an AGF catalogue.
+    Agf {
+        /// AGF file, relative to the system file.
+        file: PathBuf,
+        /// Name of the glass in it.
+        glass: String,
+    },
+}
+
+impl Medium {
+    /// The file that the medium is read from.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Medium::RefractiveIndexInfo { file } | Medium::Agf { file, .. } => Some(file),
+            _ => None,
+        }
+    }
+}
+
+fn room() -> Temperature {
+    Temperature(ROOM)
+}
+
+fn atmosphere() -> Pressure {
+    Pressure(ATMOSPHERE)
 }

@@ -180,11 +180,24 @@ impl Document {
         self.path.parent().unwrap_or(Path::new("")).join(file)
     }
 
+    /// Content of a file that the document names. A pipe or a device is refused before it is opened.
+    #[allow(clippy::result_large_err, reason = "built once per run")]
+    pub fn load(&self, file: &Path) -> Result<Vec<u8>, Problem> {
+        let resolved = self.resolve(file);
+        if !resolved.is_file() {
+            return Err(no_file(file, &resolved));
+        }
+        load(&resolved).map_err(|error| Problem::error(error.to_string()))
+    }
+
     /// Files that the document names and that are not there.
     fn missing_files(&self) -> Vec<Problem> {
         let mut files: Vec<(String, &Path)> = Vec::new();
         for (at, geometry) in self.indices.geometry.iter().zip(&self.system.geometry) {
             files.push((format!("geometry[{at}].file"), &geometry.file));
+        }
+        for (name, medium) in self.system.media.iter() {
+            files.extend(medium.file().map(|file| (format!("media[{name:?}].file"), file)));
         }
         for (name, scatter) in self.system.scatter.iter() {
             tables(scatter, &format!("scatter[{name:?}]"), &mut files);

@@ -85,7 +85,7 @@ fn place(draft: Draft, name: String, family: &str, element: &Element) -> Node {
         name,
         path,
         index: 0,
-        extras: serde_json::Value::Null,
+        extras: Default::default(),
         frame: DAffine3::from_mat3_translation(turn, at),
         mesh,
         tags,

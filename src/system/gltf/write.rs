@@ -104,7 +104,7 @@ impl File {
         text.resize(text.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + text.len() + if self.bin.is_empty() { 0 } else { 8 + self.bin.len() };
         let mut bytes = Vec::with_capacity(length);
-        let mut words = |bytes: &mut Vec<u8>, words: &[u32]| bytes.extend(words.iter().flat_map(|w| w.to_le_bytes()));
+        let words = |bytes: &mut Vec<u8>, words: &[u32]| bytes.extend(words.iter().flat_map(|w| w.to_le_bytes()));
         words(&mut bytes, &[MAGIC[0], 2, length as u32, text.len() as u32, MAGIC[1]]);
         bytes.append(&mut text);
         if !self.bin.is_empty() {

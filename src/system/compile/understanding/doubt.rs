@@ -6,10 +6,12 @@ use super::contact::{around, closed, contacts};
 use crate::detector::Place;
 use crate::error::Problem;
 use crate::geometry::Hit;
-use crate::scene::{PartKind, Scene};
+use crate::scene::{Filling, PartKind, Scene};
+use crate::source::Source;
 use crate::system::compile::assembly::Assembly;
-use crate::system::document::Document;
+use crate::system::document::{Coating, Document};
 use glam::DVec3;
+use num_complex::Complex64;
 use std::collections::BTreeSet;
 
 /// Largest dimensions of scenes that nobody would doubt, m.
@@ -24,7 +26,7 @@ pub(in crate::system::compile) fn doubts(scene: &Scene, assembly: &Assembly, doc
     let mut problems = Vec::new();
     let mut note = |path: &str, problem: Problem| problems.push(document.problem(path, problem));
     sizes(assembly, &mut note);
-    ranges(scene, &mut note);
+    ranges(scene, document, &mut note);
     energy(scene, document, &mut note);
     contradictions(scene, &mut note);
     enclosed(scene, assembly, &mut note);
@@ -61,29 +63,41 @@ fn sizes(assembly: &Assembly, note: Note) {
     }
 }
 
-/// Media that light goes through, with data that end before the sources' wavelengths do.
-fn ranges(scene: &Scene, note: Note) {
-    let used: BTreeSet<u16> = uses(scene).into_iter().flat_map(|(_, media)| media).collect();
+/// Media that light meets, with data that end before the sources' wavelengths do.
+fn ranges(scene: &Scene, document: &Document, note: Note) {
+    let mut used: BTreeSet<u16> = uses(scene).into_iter().flat_map(|(_, media)| media).collect();
+    let coated = document.system.coatings.iter().filter_map(|(_, coating)| match coating {
+        Coating::Opaque { medium } => scene.media.iter().position(|filling| filling.label == *medium),
+        _ => None,
+    });
+    used.extend(coated.map(|medium| medium as u16));
     for filling in used.iter().map(|&medium| &scene.media[medium as usize]) {
-        for source in &scene.sources {
-            let [from, to] = source.spectrum.range();
-            let path = format!("media[{:?}]", filling.label);
-            let nanometres = |m: f64| format!("{} nm", (m * 1e10).round() / 10.0);
-            let light = format!("the light of `{}`: {} to {}", source.label, nanometres(from), nanometres(to));
-            if let Some([low, high]) = filling.medium.range()
-                && (from < low * (1.0 - ROUNDING) || to > high * (1.0 + ROUNDING))
-            {
-                let what = format!("the data of `{}` do not cover {light}", filling.label);
-                let range = format!("wavelengths from {} to {}", nanometres(low), nanometres(high));
-                note(&path, Problem::error(what).expecting(range));
-            } else if let Some(bad) = [from, 0.5 * (from + to), to].into_iter().find(|&wavelength| {
-                let index = filling.medium.index(wavelength);
-                !(index.re.is_finite() && index.im.is_finite() && (index.re > 0.0 || index.im > 0.0))
-            }) {
-                note(&path, Problem::error(format!("`{}` has no index at {}", filling.label, nanometres(bad))));
-            }
+        for problem in scene.sources.iter().filter_map(|source| uncovered(filling, source)) {
+            note(&format!("media[{:?}]", filling.label), problem);
         }
     }
+}
+
+/// What the data of a medium lack of the light of a source.
+fn uncovered(filling: &Filling, source: &Source) -> Option<Problem> {
+    let (medium, light) = (&filling.medium, source.spectrum.range());
+    let nanometres = |m: f64| format!("{} nm", (m * 1e10).round() / 10.0);
+    let span = |[from, to]: [f64; 2]| format!("{} to {}", nanometres(from), nanometres(to));
+    let beyond = |[low, high]: &[f64; 2]| light[0] < low * (1.0 - ROUNDING) || light[1] > high * (1.0 + ROUNDING);
+    let lit = format!("the light of `{}`: {}", source.label, span(light));
+    if let Some(range) = medium.range().filter(beyond) {
+        let what = format!("the data of `{}` do not cover {lit}", filling.label);
+        return Some(Problem::error(what).expecting(format!("wavelengths from {}", span(range))));
+    }
+    let valid = |n: Complex64| n.re.is_finite() && n.im.is_finite() && (n.re > 0.0 || n.im > 0.0);
+    let tried = [light[0], 0.5 * (light[0] + light[1]), light[1]];
+    if let Some(bad) = tried.into_iter().find(|&wavelength| !valid(medium.index(wavelength))) {
+        return Some(Problem::error(format!("`{}` has no index at {}", filling.label, nanometres(bad))));
+    }
+    let table = medium.absorption_range().filter(beyond)?;
+    let hint = format!("it is known from {} and keeps its end value beyond", span(table));
+    let what = format!("the absorption of `{}` is not known for all of {lit}", filling.label);
+    Some(Problem::warning(what).hinting(hint))
 }
 
 /// Surfaces that send off more than arrives, at 0, 5, .., 85 deg and at grazing incidence.

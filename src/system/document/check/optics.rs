@@ -2,9 +2,11 @@
 
 use super::{Checker, ROUNDING, Section};
 use crate::error::Problem;
+use crate::medium::catalog::Shelf;
 use crate::system::document::{
     Coating, ExtrasValue, Finish, Medium, Predicate, Scatter, Scattering, Selector, Specular, Surface,
 };
+use std::path::Path;
 
 impl<'a> Checker<'a> {
     pub(super) fn media(&mut self) {
@@ -42,25 +44,54 @@ impl<'a> Checker<'a> {
                     k.iter().enumerate().for_each(|(at, k)| self.not_negative(*k, &format!("{path}.k[{at}]")));
                 }
             }
+            Medium::Air { temperature, pressure } => {
+                let [kelvin, pascal] = [temperature.0, pressure.0];
+                self.range((233.0..=373.0).contains(&kelvin), &format!("{path}.temperature"), "233 K to 373 K");
+                self.range((0.0..=2e5).contains(&pascal), &format!("{path}.pressure"), "0 to 200 kPa");
+            }
+            Medium::Glass(name) => self.catalogued(Shelf::Glass, name, path),
+            Medium::Metal(name) => self.catalogued(Shelf::Metal, name, path),
+            Medium::Material(name) => self.catalogued(Shelf::Material, name, path),
+            Medium::RefractiveIndexInfo { file } => self.file(file, path),
+            Medium::Agf { file, glass } => {
+                self.file(file, path);
+                self.not_empty(glass, &format!("{path}.glass"), "the name of the glass");
+            }
         }
+    }
+
+    /// A name of the built-in catalogue.
+    fn catalogued(&mut self, shelf: Shelf, name: &str, path: &str) {
+        if let Err(problem) = shelf.find(name) {
+            self.push(path, problem);
+        }
+    }
+
+    fn file(&mut self, file: &Path, path: &str) {
+        self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
     }
 
     pub(super) fn coatings(&mut self) {
-        for (name, coating) in self.document.system.coatings.iter() {
-            self.coating(*coating, &format!("coatings[{name:?}]"));
+        let document = self.document;
+        for (name, coating) in document.system.coatings.iter() {
+            let path = format!("coatings[{name:?}]");
+            self.coating(coating, &path);
+            if let Coating::Opaque { medium } = coating {
+                self.refer(Section::Media, medium, &format!("{path}.medium"));
+            }
         }
     }
 
-    fn coating(&mut self, coating: Coating, path: &str) {
+    fn coating(&mut self, coating: &Coating, path: &str) {
         match coating {
-            Coating::Fresnel => {}
+            Coating::Fresnel | Coating::Opaque { .. } => {}
             Coating::Ideal { reflectance, transmittance } => {
-                self.shares(&[("reflectance", reflectance), ("transmittance", transmittance)], path);
+                self.shares(&[("reflectance", *reflectance), ("transmittance", *transmittance)], path);
             }
-            Coating::Mirror { reflectance } => self.fraction(reflectance, &format!("{path}.reflectance")),
+            Coating::Mirror { reflectance } => self.fraction(*reflectance, &format!("{path}.reflectance")),
             Coating::Metal { n, k } => {
-                self.positive(n, &format!("{path}.n"));
-                self.not_negative(k, &format!("{path}.k"));
+                self.positive(*n, &format!("{path}.n"));
+                self.not_negative(*k, &format!("{path}.k"));
             }
         }
     }
@@ -88,7 +119,7 @@ impl<'a> Checker<'a> {
                 self.not_negative(*g, &format!("{path}.g"));
             }
             Scatter::Table { file, scale } => {
-                self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
+                self.file(file, path);
                 self.not_negative(*scale, &format!("{path}.scale"));
             }
             Scatter::Sum(parts) => {
@@ -138,7 +169,7 @@ impl<'a> Checker<'a> {
 
     fn specular(&mut self, specular: Option<Specular>, coating: Option<&'a str>, path: &str) {
         if let Some(coating) = specular.and_then(Specular::coating) {
-            self.coating(coating, &format!("{path}.specular"));
+            self.coating(&coating, &format!("{path}.specular"));
         }
         if let Some(name) = coating {
             self.refer(Section::Coatings, name, &format!("{path}.coating"));
