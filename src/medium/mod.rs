@@ -13,6 +13,7 @@ pub mod catalogued;
 pub mod constant;
 pub mod dispersion;
 pub mod page;
+pub mod remembered;
 pub mod tabulated;
 
 use num_complex::Complex64;
@@ -21,6 +22,7 @@ pub use air::Air;
 pub use catalogued::Catalogued;
 pub use constant::{Constant, Loss};
 pub use dispersion::Sellmeier;
+pub use remembered::Remembered;
 pub use tabulated::Tabulated;
 
 /// A homogeneous isotropic medium.

@@ -3,7 +3,7 @@
 use super::Shop;
 use crate::error::Problem;
 use crate::medium::catalog::Shelf;
-use crate::medium::{self, Medium, agf, page};
+use crate::medium::{self, Medium, Remembered, agf, page};
 use crate::scene::Filling;
 use crate::system::document as written;
 use std::path::Path;
@@ -16,12 +16,30 @@ pub const VACUUM: &str = "vacuum";
 pub fn media(shop: &mut Shop) -> Vec<Filling> {
     let vacuum = Filling { label: VACUUM.into(), medium: empty() };
     let mut media = vec![vacuum];
+    let lines = lines(shop.document);
     for (name, written) in shop.document.system.media.iter() {
         // What cannot be read is noted, and the system refused; until then its place is kept.
-        let medium = medium(shop, written, &format!("media[{name:?}]")).map_or_else(empty, Arc::from);
+        let medium = medium(shop, written, &format!("media[{name:?}]"));
+        let medium = medium.map_or_else(empty, |medium| Arc::new(Remembered::new(medium, &lines)));
         media.push(Filling { label: name.into(), medium });
     }
     media
+}
+
+/// Vacuum wavelengths (m) that the sources have as lines; none if they are too many to be searched one by one.
+fn lines(document: &written::Document) -> Vec<f64> {
+    const MOST: usize = 8;
+    let mut lines = Vec::new();
+    for (_, source) in document.system.sources.iter() {
+        match &source.spectrum {
+            written::Spectrum::Line(wavelength) => lines.push(wavelength.0),
+            written::Spectrum::Lines(shares) => lines.extend(shares.iter().map(|(wavelength, _)| wavelength.0)),
+            _ => {}
+        }
+    }
+    lines.sort_by(f64::total_cmp);
+    lines.dedup();
+    if lines.len() > MOST { Vec::new() } else { lines }
 }
 
 fn empty() -> Arc<dyn Medium> {
@@ -52,50 +70,45 @@ fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<
             Box::new(table?)
         }
         written::Medium::Air { temperature, pressure } => Box::new(medium::Air::new(temperature.0, pressure.0)),
-        written::Medium::Glass(name) => catalogued(shop, Shelf::Glass, name, path)?,
-        written::Medium::Metal(name) => catalogued(shop, Shelf::Metal, name, path)?,
-        written::Medium::Material(name) => catalogued(shop, Shelf::Material, name, path)?,
+        written::Medium::Glass(name) => Box::new(noted(shop, Shelf::Glass.medium(name), path)?),
+        written::Medium::Metal(name) => Box::new(noted(shop, Shelf::Metal.medium(name), path)?),
+        written::Medium::Material(name) => Box::new(noted(shop, Shelf::Material.medium(name), path)?),
         written::Medium::RefractiveIndexInfo { file } => {
             let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
             let page = page::parse(&text, &file.display().to_string());
-            Box::new(read(shop, page, file)?.medium)
+            Box::new(read(shop, page, file, path)?.medium)
         }
         written::Medium::Agf { file, glass } => {
             let text = agf::decode(&load(shop, file, path)?);
             let glass = agf::parse(&text, glass, &file.display().to_string());
-            Box::new(read(shop, glass, file)?.medium)
+            Box::new(read(shop, glass, file, path)?.medium)
         }
     })
 }
 
-/// A medium of the built-in catalogue.
-fn catalogued(shop: &mut Shop, shelf: Shelf, name: &str, path: &str) -> Option<Box<dyn Medium>> {
-    match shelf.medium(name) {
-        Ok(medium) => Some(Box::new(medium)),
-        Err(problem) => {
-            shop.fault(path, problem);
-            None
-        }
-    }
-}
-
 /// The bytes of a file that the document names at `path`, noted as an input.
 pub fn load(shop: &mut Shop, file: &Path, path: &str) -> Option<Vec<u8>> {
-    match shop.document.load(file) {
-        Ok(bytes) => {
-            shop.input(&file.display().to_string(), &bytes);
-            Some(bytes)
-        }
-        Err(problem) => {
-            shop.fault(path, problem);
-            None
-        }
-    }
+    let bytes = noted(shop, shop.document.load(file), path)?;
+    shop.input(&file.display().to_string(), &bytes);
+    Some(bytes)
 }
 
-/// What was read from a file, or its problem noted.
-fn read<T>(shop: &mut Shop, outcome: Result<T, Problem>, file: &Path) -> Option<T> {
-    outcome.map_err(|problem| shop.problems.push(problem.in_file(shop.document.resolve(file)))).ok()
+/// What was made of the written medium at `path`, or its problem noted.
+fn noted<T>(shop: &mut Shop, outcome: Result<T, Problem>, path: &str) -> Option<T> {
+    outcome.map_err(|problem| shop.fault(path, problem)).ok()
+}
+
+/// What was made of the content of a file, or its problem noted: in the file, or where the document names the file.
+fn read<T>(shop: &mut Shop, outcome: Result<T, Problem>, file: &Path, path: &str) -> Option<T> {
+    let whole = |problem: Problem| {
+        let message = format!("{:?}: {}", file.display().to_string(), problem.message);
+        Problem { message, ..problem }
+    };
+    let note = |problem: Problem| match problem.span {
+        Some(_) => shop.problems.push(problem.in_file(shop.document.resolve(file))),
+        None => shop.fault(path, whole(problem)),
+    };
+    outcome.map_err(note).ok()
 }
 
 /// Index of the ambient medium.
