@@ -33,25 +33,13 @@
 //! Source: Ansys Zemax OpticStudio Help, "Glass catalogs: file format" and "Glass catalog formulas".
 
 use super::air::ICE;
+use super::catalogued::{Catalogued, Stated};
 use super::dispersion::{Cauchy, Fraction, Fractions, Herzberger, Polynomial, Sellmeier};
-use super::{Air, Catalogued, Medium, Tabulated, extinction};
+use super::{Air, MICROMETRES, Medium, Tabulated, extinction};
 use crate::error::{Problem, Span, did_you_mean};
 
 /// Half of the last digit of a transmittance printed with three, dimensionless.
 pub const DARKEST: f64 = 5e-4;
-
-/// Micrometres, which the wavelengths of a catalogue are in, per metre: divided by it, 0.55 um is the double nearest to 550e-9.
-const MICROMETRES: f64 = 1e6;
-
-/// A glass as read.
-#[derive(Debug)]
-pub struct Glass {
-    pub medium: Catalogued,
-    /// Index at the d line as stated, dimensionless.
-    pub n_d: Option<f64>,
-    /// Abbe number as stated, dimensionless.
-    pub abbe: Option<f64>,
-}
 
 /// One line of the catalogue with its number, from 1.
 #[derive(Clone, Copy)]
@@ -74,7 +62,7 @@ pub fn decode(bytes: &[u8]) -> String {
 }
 
 /// Reads one glass of a catalogue. `origin`: what reports call the catalogue.
-pub fn parse(text: &str, glass: &str, origin: &str) -> Result<Glass, Problem> {
+pub fn parse(text: &str, glass: &str, origin: &str) -> Result<Stated, Problem> {
     let lines = section(text, glass)?;
     let head = lines[0];
     let fields: Vec<&str> = head.text.split_whitespace().collect();
@@ -101,7 +89,7 @@ pub fn parse(text: &str, glass: &str, origin: &str) -> Result<Glass, Problem> {
     };
     match medium.gap() {
         Some(gap) => Err(head.fault(&format!("`{glass}` has no index at {:.6} um", gap * MICROMETRES))),
-        None => Ok(Glass { medium, n_d: stated(4), abbe: stated(5) }),
+        None => Ok(Stated { medium, n_d: stated(4), abbe: stated(5) }),
     }
 }
 
@@ -203,13 +191,12 @@ fn absorption(lines: &[Line]) -> Result<Option<Tabulated>, Problem> {
             }
         }
     }
-    // By wavelength; of one wavelength the one seen through first, of those the thickest.
-    let order = |a: &[f64; 3], b: &[f64; 3]| {
-        let rank = |row: &[f64; 3]| if row[1] > 0.0 { -row[2] } else { row[2] };
-        let dark = |row: &[f64; 3]| row[1] <= 0.0;
-        a[0].total_cmp(&b[0]).then(dark(a).cmp(&dark(b))).then(rank(a).total_cmp(&rank(b)))
-    };
-    rows.sort_by(order);
+    // First of one wavelength comes the thickest that light is seen through, else the thinnest.
+    rows.sort_by(|a, b| {
+        let seen = |row: &[f64; 3]| row[1] > 0.0;
+        let rank = |row: &[f64; 3]| if seen(row) { -row[2] } else { row[2] };
+        a[0].total_cmp(&b[0]).then(seen(b).cmp(&seen(a))).then(rank(a).total_cmp(&rank(b)))
+    });
     rows.dedup_by_key(|row| row[0]);
     let wavelengths: Vec<f64> = rows.iter().map(|row| row[0] / MICROMETRES).collect();
     let of = |row: &[f64; 3]| extinction(-row[1].max(DARKEST).ln() / (row[2] * 1e-3), row[0] / MICROMETRES);

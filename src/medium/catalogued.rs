@@ -35,6 +35,16 @@ pub struct Catalogued {
     pub wavelengths_in: Option<Air>,
 }
 
+/// A medium with what its catalogue states of it.
+#[derive(Debug)]
+pub struct Stated {
+    pub medium: Catalogued,
+    /// Index at the d line (587.5618 nm in air), dimensionless.
+    pub n_d: Option<f64>,
+    /// Abbe number (n_d - 1) / (n_F - n_C), dimensionless.
+    pub abbe: Option<f64>,
+}
+
 impl Catalogued {
     /// n + ik as the catalogue gives it, at its own wavelength (m).
     pub fn printed(&self, wavelength: f64) -> Complex64 {

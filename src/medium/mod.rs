@@ -25,6 +25,9 @@ pub use dispersion::Sellmeier;
 pub use remembered::Remembered;
 pub use tabulated::Tabulated;
 
+/// Micrometres, which catalogues count in, per metre; divided by it, 0.55 um is the double nearest to 550e-9.
+const MICROMETRES: f64 = 1e6;
+
 /// A homogeneous isotropic medium.
 pub trait Medium: Send + Sync + std::fmt::Debug {
     /// Complex index n + ik at vacuum wavelength `wavelength` (m), k >= 0 absorbs; absolute (relative to vacuum)

@@ -23,24 +23,12 @@
 //! Source: M. Polyanskiy, Refractiveindex.info database of optical constants, Sci. Data 11, 94 (2024), and its "Dispersion formulas".
 
 use super::air::{ICE, ROOM};
+use super::catalogued::{Catalogued, Stated};
 use super::dispersion::{Cauchy, Exotic, Fraction, Fractions, Gas, Herzberger, Polynomial, Retro, Sellmeier};
-use super::{Air, Catalogued, Medium, Tabulated};
+use super::{Air, MICROMETRES, Medium, Tabulated};
 use crate::error::{Problem, Span};
 use serde::Deserialize;
 use serde_saphyr::{Location, Spanned};
-
-/// Micrometres, which the wavelengths of a page are in, per metre: divided by it, 0.55 um is the double nearest to 550e-9.
-const MICROMETRES: f64 = 1e6;
-
-/// A page as read.
-#[derive(Debug)]
-pub struct Page {
-    pub medium: Catalogued,
-    /// Index at the d line (587.5618 nm in air) that the page states, dimensionless.
-    pub n_d: Option<f64>,
-    /// Abbe number (n_d - 1) / (n_F - n_C) that the page states.
-    pub abbe: Option<f64>,
-}
 
 /// A page as written.
 #[derive(Deserialize)]
@@ -84,7 +72,7 @@ struct Given {
 }
 
 /// Reads a page. `origin`: what reports call it. Fails with the first thing that is wrong, with its line.
-pub fn parse(text: &str, origin: &str) -> Result<Page, Problem> {
+pub fn parse(text: &str, origin: &str) -> Result<Stated, Problem> {
     let options = serde_saphyr::options! { with_snippet: false };
     let written: Written = serde_saphyr::from_str_with_options(text, options).map_err(|fault| {
         let place = fault.location().and_then(place);
@@ -117,7 +105,7 @@ pub fn parse(text: &str, origin: &str) -> Result<Page, Problem> {
     match medium.gap() {
         Some(at) => Err(Problem::error(format!("there is no index at {:.6} um", at * MICROMETRES))
             .expecting("n above 0 and k of 0 or more in the whole range")),
-        None => Ok(Page { medium, n_d, abbe }),
+        None => Ok(Stated { medium, n_d, abbe }),
     }
 }
 

@@ -13,7 +13,8 @@
 //! An entry is a page of refractiveindex.info without its texts, read by [`page`]; `catalog/README.md` tells what was
 //! left out and how the files are made.
 
-use super::{Catalogued, page};
+use super::catalogued::{Catalogued, Stated};
+use super::page;
 use crate::error::{Problem, did_you_mean};
 
 /// Entries, each behind a line `# shelf name`.
@@ -123,7 +124,7 @@ impl Entry {
     }
 
     /// The page behind the entry.
-    pub fn page(&self) -> Result<page::Page, Problem> {
+    pub fn page(&self) -> Result<Stated, Problem> {
         page::parse(self.text, self.name)
     }
 

@@ -26,10 +26,8 @@ pub use polynomial::Polynomial;
 pub use retro::Retro;
 pub use sellmeier::Sellmeier;
 
+use super::MICROMETRES;
 use num_complex::Complex64;
-
-/// Micrometres in a metre.
-const MICROMETRES: f64 = 1e6;
 
 /// The index whose square is `square`: imaginary below 0, which is total reflection, as in a reststrahlen band.
 fn root(square: f64) -> Complex64 {
