@@ -1,7 +1,7 @@
 //! `straylight check`: what was understood of a system.
 
 use super::table::{Table, digits, direction, millimetres};
-use super::{Ending, tell, warn};
+use super::{Ending, optics, tell, warn};
 use clap::Args;
 use std::f64::consts::FRAC_PI_2;
 use std::path::PathBuf;
@@ -47,6 +47,7 @@ pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
         parts(&facts),
         budgets(&facts.budgets),
         sources(scene, &facts.beams),
+        optics::section(&facts),
         detectors(scene),
         memory(&facts),
     ];

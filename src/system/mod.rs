@@ -5,6 +5,7 @@ pub mod document;
 pub mod elements;
 pub mod exact;
 pub mod gltf;
+pub mod lens;
 pub mod schema;
 pub mod select;
 pub mod units;

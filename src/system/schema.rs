@@ -66,6 +66,9 @@ mod tests {
     fn the_schema_shows_every_section_field_and_option() {
         SECTIONS.iter().for_each(|name| assert!(shown(name, true), "the schema lacks the section {name}"));
         fields::<Geometry>();
+        fields::<Element>();
+        fields::<Optical>();
+        fields::<Exact>();
         fields::<Surface>();
         fields::<Finish>();
         fields::<Source>();
@@ -73,6 +76,9 @@ mod tests {
         fields::<Run>();
         fields::<Roulette>();
         options::<Up>();
+        options::<Body>();
+        options::<Form>();
+        options::<Relative>();
         options::<Medium>();
         options::<Coating>();
         options::<Specular>();

@@ -76,7 +76,7 @@ pub fn compile(document: &Document) -> Result<Compiled, Error> {
 /// Compiles a document and says what was understood of it.
 pub fn understand(document: &Document) -> Result<(Compiled, Understanding), Error> {
     let (compiled, assembly) = build(document)?;
-    let understanding = understanding::understand(&compiled.scene, &assembly, &compiled.settings);
+    let understanding = understanding::understand(&compiled.scene, &assembly, &compiled.settings, document);
     Ok((compiled, understanding))
 }
 
