@@ -15,6 +15,7 @@ fn main() -> ExitCode {
         Verb::Run(args) => cli::run::run(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
+        Verb::Fit(args) => cli::fit::fit(&args),
         Verb::Schema => cli::schema::schema(),
     };
     cli::conclude(done)

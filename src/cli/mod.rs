@@ -1,6 +1,7 @@
 //! The command line: one file per verb. The only place that prints.
 
 pub mod check;
+pub mod fit;
 pub mod ray;
 pub mod run;
 pub mod schema;
@@ -41,6 +42,8 @@ pub enum Verb {
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event
     Ray(ray::RayArgs),
+    /// Find the planes, spheres, conics and cylinders that a mesh was made from
+    Fit(fit::FitArgs),
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,

@@ -5,6 +5,7 @@ mod assign;
 mod exact;
 mod lights;
 mod models;
+mod parts;
 mod receivers;
 pub mod understanding;
 
@@ -16,6 +17,7 @@ use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+pub use parts::{parts_of_file, parts_of_system};
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
