@@ -254,6 +254,27 @@ fn halves_that_share_no_corner_are_one_face() {
     assert!(largest.triangles.len() >= 40 * 23, "{}", largest.triangles.len());
 }
 
+/// Where the halves of a face are divided differently they stay two faces of one sphere; the edge of the lens is their axis.
+#[test]
+fn halves_whose_seams_do_not_match_share_the_axis_of_the_edge() {
+    let radius = 45.0;
+    let half = |rings: usize, sectors: usize, start: f64| {
+        let at = move |i: usize, j: usize| {
+            let (r, angle) = (10.0 * i as f64 / rings as f64, start + 0.5 * TAU * j as f64 / sectors as f64);
+            (r * DVec2::from_angle(angle)).extend(conic(radius, 0.0)(r))
+        };
+        grid(&at, rings, sectors)
+    };
+    let edge =
+        |i: usize, j: usize| (10.0 * DVec2::from_angle(TAU * (j % 54) as f64 / 54.0)).extend(2.0 + 3.0 * i as f64);
+    for place in places() {
+        let lens = half(8, 20, 0.0).into_iter().chain(half(11, 27, 0.5 * TAU)).chain(grid(&edge, 1, 54)).collect();
+        let faces = found(lens, place.0, place.1, &WISH);
+        assert_eq!(faces.len(), 3);
+        faces[..2].iter().for_each(|face| close(placed(face, Kind::Sphere, place, 1e-3), radius, 1e-3));
+    }
+}
+
 /// A face that is two forms is neither.
 #[test]
 fn nothing_is_found_where_there_is_nothing() {

@@ -45,10 +45,10 @@ Example:
 A row for each smooth face of each node: the simplest form that all of its corners lie on, with radius and conic
 constant +- one standard error, vertex, axis, the radius of a circular rim, the residuals of the corners, and by how
 much the next simpler form misses them. R > 0: the centre lies towards +axis. Then the entries to paste into `surfaces`;
-they turn the facets into that form. Of a face that is made of several forms nothing is found: a smaller --smooth
-divides it.";
+they turn the facets into that form. Where nothing is found, the last column says how near the nearest form comes: a
+--tolerance accepts it, and a smaller --smooth divides a face that is made of several forms.";
 
-/// Rows that are printed; of more, the first.
+/// Rows that are printed; of more, the first. Entries are printed of all.
 const MOST: usize = 200;
 
 /// Powers of r.
@@ -112,7 +112,7 @@ fn table(faces: &[Face]) -> String {
         table.row(row(face));
     }
     let more = faces.len().saturating_sub(MOST);
-    table.text() + &if more > 0 { format!("  and {more} more\n") } else { String::new() }
+    table.text() + &if more > 0 { format!("  and {more} more; --node chooses\n") } else { String::new() }
 }
 
 fn row(face: &Face) -> [String; 12] {
@@ -179,7 +179,7 @@ fn entries(faces: &[Face]) -> String {
             entry.replace('\n', "\n        ")
         ))
     };
-    let all: Vec<String> = faces.iter().take(MOST).filter_map(entry).collect();
+    let all: Vec<String> = faces.iter().filter_map(entry).collect();
     match all.is_empty() {
         true => "\nNothing to declare: flat faces are what they are, and no other form was found.\n".into(),
         false => format!("\nTo paste at the end of `surfaces`:\n\n{}", all.concat()),

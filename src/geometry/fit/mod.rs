@@ -124,8 +124,10 @@ pub fn fit(cloud: &Cloud, search: &Search) -> Option<Outcome> {
     Some(Outcome { fit: best, found: fits, simpler })
 }
 
+/// The simplest of those that are hardly farther off than the best.
 fn nearest(tried: &mut Vec<Fit>) -> Option<Fit> {
-    let best = (0..tried.len()).min_by(|&i, &j| tried[i].rms.total_cmp(&tried[j].rms))?;
+    let least = tried.iter().map(|fit| fit.rms).fold(f64::INFINITY, f64::min);
+    let best = tried.iter().position(|fit| fit.rms <= 2.0 * least)?;
     Some(tried.swap_remove(best))
 }
 
@@ -153,8 +155,8 @@ impl Search<'_> {
 
     /// `solve`: about a given axis, or a free one. `numbers`: how many are sought with a free axis.
     fn about(&self, cloud: &Cloud, numbers: usize, solve: &dyn Fn(Option<&Line>) -> Option<Fit>) -> Option<Fit> {
-        if cloud.len() < if numbers == 3 { 3 } else { 2 * numbers } {
-            // Corners that cannot contradict prove nothing.
+        // Corners that cannot contradict prove nothing. A plane is three corners, or more.
+        if cloud.len() < if numbers == 3 { 3 } else { numbers + 3 } {
             return None;
         }
         let exact = |line: &Line| solve(Some(line)).filter(|fit| fit.max <= self.rounding);

@@ -20,6 +20,9 @@ pub(super) enum Axis {
     Free,
 }
 
+/// Largest curvature at a vertex, in 1 / the reach of the face.
+const STEEPEST: f64 = 100.0;
+
 /// A start, and what is sought.
 pub(super) struct Revolution<'a> {
     pub pose: Pose,
@@ -35,6 +38,11 @@ impl Revolution<'_> {
     pub fn fit(&self, cloud: &Cloud) -> Option<Fit> {
         let minimum = minimise(self.start(), &|values| self.residuals(cloud, values))?;
         let (pose, base, terms) = self.unpack(&minimum.values);
+        // Beyond, it is a cone whose tip is rounded, or two planes that cross.
+        let sheet = |p: &DVec3| base.near(pose.local(*p));
+        if base.curvature.abs() > STEEPEST || self.kind == Kind::Conic && !cloud.points.iter().all(sheet) {
+            return None;
+        }
         let shape = match self.kind {
             Kind::Asphere => Shape::Sag { sag: Sag::Asphere { base, terms }, bend: 0.0 },
             _ => Shape::Conic(base),

@@ -15,9 +15,9 @@ use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
+pub use parts::{parts_of_file, parts_of_system};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-pub use parts::{parts_of_file, parts_of_system};
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
