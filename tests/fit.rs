@@ -14,6 +14,7 @@ use straylight::geometry::fit::Kind;
 use straylight::system::compile::{compile, parts_of_file};
 use straylight::system::document::Document;
 use straylight::system::fit::{Face, Wish, faces};
+use straylight::system::select::{Predicate, Selector, select};
 use straylight::system::units::{FromText, LengthUnit};
 use tempfile::TempDir;
 
@@ -372,6 +373,18 @@ fn what_is_printed_of_the_triplet_can_be_pasted_into_its_system() {
     assert!(compiled.warnings.is_empty(), "{:?}", compiled.warnings);
 }
 
+#[test]
+fn the_point_of_an_entry_selects_its_face_alone() {
+    let (nodes, _) = parts_of_file(Path::new(TRIPLET), LengthUnit(1.0)).expect("the triplet");
+    for face in nodes.iter().flat_map(|node| faces(node, &WISH)) {
+        let nearest = Predicate::Nearest { point: face.point };
+        let selector = Selector::Faces { of: face.node.clone(), predicate: nearest, smooth: face.smooth };
+        let picked = select(&selector, &nodes);
+        assert!(picked.len() == 1 && picked[0].triangles == face.triangles, "{} {}", face.node, face.number);
+        assert_eq!(nodes[picked[0].node].name, face.node);
+    }
+}
+
 /// Every form that can be printed is read back and lies on the face that its point selects.
 #[test]
 fn entries_of_all_forms_compile() {
@@ -418,7 +431,10 @@ fn what_cannot_be_meant_is_told() {
         (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&output.stderr).into_owned())
     };
     let (status, text) = code(&["fit", TRIPLET, "--node", "Lens_9"]);
-    assert!(status == 65 && text.contains("no node matches `Lens_9`; did you mean `Lens_1`?"), "{status} {text}");
+    assert!(
+        status == 64 && text.contains("--node \"Lens_9\": no node matches; did you mean \"Lens_1\"?"),
+        "{status} {text}"
+    );
     assert_eq!(code(&["fit", "gone.glb"]).0, 66);
     assert_eq!(code(&["fit", "gone.ron"]).0, 66);
     assert_eq!(code(&["fit", "gone.ron", "--unit", "mm"]).0, 64);

@@ -5,7 +5,7 @@ use super::{Ending, tell, warn};
 use clap::Args;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
-use straylight::error::{Error, Problem, did_you_mean};
+use straylight::error::{Error, Problem, did_you_mean, printable};
 use straylight::geometry::exact::Shape;
 use straylight::geometry::fit::{Fit, Kind};
 use straylight::report::measured;
@@ -66,7 +66,7 @@ pub fn fit(args: &FitArgs) -> Result<Ending, Error> {
     };
     let chosen: Vec<&Node> = nodes.iter().filter(|node| named(&args.node, node)).collect();
     if chosen.is_empty() {
-        return Err(nothing_matches(&args.file, &args.node, &nodes));
+        return Err(nothing_matches(&args.node, &nodes));
     }
     let found: Vec<Face> = chosen.into_iter().flat_map(|node| faces(node, &wish)).collect();
     tell(&table(&found));
@@ -83,13 +83,13 @@ fn parts(file: &Path, unit: Option<LengthUnit>) -> Result<(Vec<Node>, Vec<Proble
     }
 }
 
-fn nothing_matches(file: &Path, glob: &str, nodes: &[Node]) -> Error {
-    let problem = Problem::error(format!("no node matches `{glob}`")).in_file(file);
+fn nothing_matches(glob: &str, nodes: &[Node]) -> Error {
     let names: Vec<&str> = nodes.iter().map(|node| node.name.as_str()).collect();
-    Error::Input(vec![match did_you_mean(glob, names.iter().copied()) {
-        Some(name) => problem.hinting(format!("did you mean `{name}`?")),
-        None => problem.expecting(format!("one of {}", names.join(", "))),
-    }])
+    let hint = match did_you_mean(glob, names.iter().copied()) {
+        Some(name) => format!("did you mean {name:?}?"),
+        None => format!("expected one of {}", names.join(", ")),
+    };
+    Error::Usage(printable(&format!("--node {glob:?}: no node matches; {hint}")))
 }
 
 fn table(faces: &[Face]) -> String {

@@ -44,8 +44,8 @@ impl Line {
         [-reach, reach].into_iter().all(|t| self.distance(other.foot(near) + t * other.direction) <= slack)
     }
 
-    /// The line along a coordinate axis, or through the origin or a coordinate plane, that this one may be meant to be near a face of size `reach`
-    /// (m) about `near`; `None` if there is none beside it.
+    /// The round numbers beside this line: along a coordinate axis if it leans by less than 1e-3, through the origin or a
+    /// coordinate axis if it passes that by less than 1e-3 of `reach` (m), the size of the face about `near`. `None` if there are none.
     pub fn neat(&self, near: DVec3, reach: f64) -> Option<Line> {
         let lean = |axis: &DVec3| self.direction.cross(*axis).length();
         let direction = DVec3::AXES.into_iter().find(|axis| lean(axis) < NEAR).unwrap_or(self.direction);

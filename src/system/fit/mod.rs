@@ -91,6 +91,7 @@ impl Patch {
         let rims = rims(mesh, &triangles, tolerance);
         let own = rims.iter().flatten().map(Circle::line);
         let lines = own.flat_map(|line| line.neat(cloud.centre(), cloud.reach()).into_iter().chain([line])).collect();
+        let rounding = rounding.min(tolerance);
         Patch { triangles, cloud: Some(cloud), rims, lines, rounding, tolerance, outcome: None }
     }
 
