@@ -17,6 +17,7 @@ fn main() -> ExitCode {
         Verb::Ray(args) => cli::ray::ray(&args),
         Verb::Export(args) => cli::export::export(&args),
         Verb::Import(args) => cli::import::import(&args),
+        Verb::Fit(args) => cli::fit::fit(&args),
         Verb::Schema => cli::schema::schema(),
     };
     cli::conclude(done)

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod export;
+pub mod fit;
 pub mod import;
 mod optics;
 pub mod ray;
@@ -48,6 +49,8 @@ pub enum Verb {
     Export(export::ExportArgs),
     /// Turn a lens of a design program into a system
     Import(import::ImportArgs),
+    /// Find the planes, spheres, conics and cylinders that a mesh was made from
+    Fit(fit::FitArgs),
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,

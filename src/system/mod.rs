@@ -4,6 +4,7 @@ pub mod compile;
 pub mod document;
 pub mod elements;
 pub mod exact;
+pub mod fit;
 pub mod gltf;
 pub mod lens;
 pub mod schema;

@@ -70,7 +70,7 @@ pub fn read(shop: &mut Shop) -> Assembly {
 }
 
 /// Scaled by the unit, turned by `up`, then by `rotate`, then moved.
-fn place(mut node: Node, placed: &written::Geometry) -> Node {
+pub(super) fn place(mut node: Node, placed: &written::Geometry) -> Node {
     let up = match placed.up {
         written::Up::Y => DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y),
         written::Up::Stored | written::Up::Z => DMat3::IDENTITY,
@@ -96,7 +96,7 @@ fn place(mut node: Node, placed: &written::Geometry) -> Node {
 }
 
 /// Names that occur twice become their paths, and those get numbers if they still do.
-fn make_unique(nodes: &mut [Node]) {
+pub(super) fn make_unique(nodes: &mut [Node]) {
     let taken = |nodes: &[Node], i: usize, name: &str| nodes.iter().enumerate().any(|(j, n)| j != i && n.name == name);
     let twice: Vec<usize> = (0..nodes.len()).filter(|&i| taken(nodes, i, &nodes[i].name.clone())).collect();
     for i in twice {

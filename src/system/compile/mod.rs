@@ -6,6 +6,7 @@ mod exact;
 mod lights;
 mod media;
 mod models;
+mod parts;
 mod receivers;
 pub mod understanding;
 
@@ -19,6 +20,7 @@ use assembly::Assembly;
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+pub use parts::{parts_of_file, parts_of_system};
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
