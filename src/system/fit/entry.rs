@@ -7,11 +7,12 @@ use crate::system::document::default_smooth;
 use glam::DVec3;
 
 impl Face {
-    /// RON to paste into `surfaces`; `None` if no form was found, or if it would change nothing: planes whose rim is no circle.
+    /// RON to paste into `surfaces`; `None` if no form was found, or if it would change nothing: flat facets are a plane already, but on a
+    /// lens with round rims the flat side has one, too.
     pub fn entry(&self) -> Option<String> {
         let fit = &self.outcome.fit;
         let rim = self.semi_diameter();
-        if !self.outcome.found || fit.kind == Kind::Plane && rim.is_none() {
+        if !self.outcome.found || fit.kind == Kind::Plane && (rim.is_none() || !self.of_lens) {
             return None;
         }
         let smooth = match self.smooth == default_smooth().0 {

@@ -37,8 +37,13 @@ pub struct Face {
     pub tolerance: f64,
     /// rad
     pub smooth: f64,
+    /// True if the node has a sphere, conic or asphere.
+    of_lens: bool,
     rims: Vec<Option<Circle>>,
 }
+
+/// The inner rim of a ring is told from the outer one if it is smaller than this part of it.
+const NARROWEST: f64 = 0.97;
 
 /// Lines of a face and of a node that are tried.
 const MOST_LINES: usize = 2;
@@ -59,11 +64,13 @@ pub fn faces(node: &Node, wish: &Wish) -> Vec<Face> {
         patch.outcome = patch.search(&lines, wish);
     }
     align(&mut patches, wish);
+    let height = |fit: &Fit| matches!(fit.kind, Kind::Sphere | Kind::Conic | Kind::Asphere);
+    let of_lens = patches.iter().filter_map(Patch::found).any(height);
     let faces = patches.into_iter().enumerate().filter_map(|(i, patch)| {
         let outcome = patch.outcome?;
         let (point, node) = (middle(&node.mesh, &patch.triangles), node.name.clone());
         let Patch { triangles, rims, tolerance, .. } = patch;
-        Some(Face { node, number: i + 1, triangles, point, outcome, tolerance, smooth: wish.smooth, rims })
+        Some(Face { node, number: i + 1, triangles, point, outcome, tolerance, smooth: wish.smooth, of_lens, rims })
     });
     faces.collect()
 }
@@ -160,14 +167,15 @@ fn middle(mesh: &Mesh, triangles: &[u32]) -> DVec3 {
 }
 
 impl Face {
-    /// Radius of the outer rim, m, if all rims are circles about the axis: one, or two of a ring.
+    /// Radius of the outer rim, m, if all rims are circles about the axis: one, or two that are well apart.
     pub fn semi_diameter(&self) -> Option<f64> {
         let fit = &self.outcome.fit;
         let height = !matches!(fit.kind, Kind::Cylinder | Kind::Cone);
         let about =
             |circle: &Circle| circle.line().same(&fit.line(), circle.centre, circle.radius, 2.0 * self.tolerance);
         let circles: Vec<Circle> = self.rims.iter().copied().collect::<Option<_>>()?;
-        let round = height && (1..=2).contains(&circles.len()) && circles.iter().all(about);
-        round.then(|| circles.iter().map(|circle| circle.radius).fold(0.0, f64::max))
+        let outer = circles.iter().map(|circle| circle.radius).fold(0.0, f64::max);
+        let apart = circles.iter().filter(|circle| circle.radius > NARROWEST * outer).count() == 1;
+        (height && circles.len() <= 2 && apart && circles.iter().all(about)).then_some(outer)
     }
 }
