@@ -187,7 +187,11 @@ fn every_shipped_system_is_held_to_its_numbers() {
     let mut folders: Vec<&str> = shipped.iter().map(|(folder, _)| folder.as_str()).collect();
     folders.sort_unstable();
     folders.dedup();
-    assert_eq!(folders, ["baffled_tube", "double_gauss", "fast_lens", "integrating_sphere", "questar", "slab", "triplet"], "is there a test for each?");
+    assert_eq!(
+        folders,
+        ["baffled_tube", "double_gauss", "fast_lens", "integrating_sphere", "questar", "slab", "triplet"],
+        "is there a test for each?"
+    );
 }
 
 /// The example of the README is a function of this file, so that it compiles.

@@ -8,7 +8,6 @@ use straylight::error::Error;
 use straylight::report;
 use straylight::system::compile::geometry;
 use straylight::system::document::Document;
-use straylight::system::gltf;
 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
@@ -33,7 +32,7 @@ pub fn export(args: &ExportArgs) -> Result<Ending, Error> {
     }
     let placed = geometry(&Document::read(&args.system)?)?;
     warn(&placed.warnings);
-    let bytes = gltf::glb(&placed.nodes, placed.shift);
+    let bytes = placed.glb();
     let failed = |source| Error::Io { path: args.file.clone(), source };
     report::create(&args.file, |out| out.write_all(&bytes)).map_err(failed)?;
     let triangles: usize = placed.nodes.iter().map(|node| node.mesh.triangles.len()).sum();

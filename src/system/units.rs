@@ -161,7 +161,8 @@ pub struct Coefficient {
 impl FromText for Coefficient {
     const EXPECTED: &'static str = "a coefficient with a power of a length as its unit, such as \"1.2e-5 mm^-3\"";
     fn from_text(text: &str) -> Result<Self, String> {
-        let (number, rest) = split_number(text.trim()).ok_or_else(|| format!("{text:?} does not begin with a number"))?;
+        let (number, rest) =
+            split_number(text.trim()).ok_or_else(|| format!("{text:?} does not begin with a number"))?;
         let value = convert(number, ("", 1.0, 0))?;
         let rest = rest.trim().replace('^', "");
         if rest.is_empty() {

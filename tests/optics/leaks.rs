@@ -59,10 +59,8 @@ fn bodies() -> Vec<(&'static str, Compiled, Singlet)> {
         )
     };
     let spheroid = Model::new().add("lens", sphere(5.0, 2, Equal::Corners));
-    let whole = BICONVEX.sections(
-        "(on: Node(\"lens\"), exact: (form: Sphere(radius: \"5 mm\"), vertex: \"(0, 0, -5) mm\")),",
-        n,
-    );
+    let whole = BICONVEX
+        .sections("(on: Node(\"lens\"), exact: (form: Sphere(radius: \"5 mm\"), vertex: \"(0, 0, -5) mm\")),", n);
     let globe = Singlet { curvature: [0.2, -0.2], thickness: 10.0, half: 5.0 };
     let mut bodies = vec![
         ("cemented", system(&around(cemented, n), ""), BICONVEX),

@@ -53,7 +53,8 @@ fn determinant(j: &[Phase; 4]) -> f64 {
 #[test]
 fn rad_05_etendue_through_a_thick_lens() {
     let case = Case::load("RAD-05");
-    let lens = singlet(&form(case.setup("/lens/R1")), &form(case.setup("/lens/R2")), case.given("/lens/thickness"), 30.0);
+    let lens =
+        singlet(&form(case.setup("/lens/R1")), &form(case.setup("/lens/R2")), case.given("/lens/thickness"), 30.0);
     let compiled = system(&around(&lens, case.given("/lens/n")), "");
     let planes = [case.given("/start_plane_z"), case.given("/end_plane_z")];
     for value in case.values() {
@@ -85,7 +86,12 @@ fn etendue_is_conserved_by_every_form() {
         let compiled = system(&around(&singlet(front, "Sphere(radius: \"-70 mm\")", 12.0, 30.0), 1.5168), "");
         for from in [[2.0, -3.0, 0.02, 0.05], [-8.0, 6.0, 0.06, -0.03], [0.3, 0.2, -0.1, 0.1]] {
             let j = jacobian(|ray| mapped(&compiled, ray, [-20.0, 60.0]), from, 1e-4);
-            assert!((determinant(&j) - 1.0).abs() < 1e-6 && asymmetry(&j) < 1e-6, "{front} {from:?}: {} {}", determinant(&j), asymmetry(&j));
+            assert!(
+                (determinant(&j) - 1.0).abs() < 1e-6 && asymmetry(&j) < 1e-6,
+                "{front} {from:?}: {} {}",
+                determinant(&j),
+                asymmetry(&j)
+            );
         }
     }
 }
@@ -129,7 +135,10 @@ fn rad_07_hemispherical_immersion_lens() {
         .replace("extent: Point, at: \"(0, 0, -1000) mm\",", "extent: Node(name: \"sky\", side: Back),")
         .replace("Collimated(direction: \"(0, 0, 1)\")", "Lambertian")
         .replace(crate::lab::CERTAIN, "run: (rays: 600000, seed: 3, paths: 0),")
-        .replace("default:", "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:");
+        .replace(
+            "default:",
+            "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:",
+        );
     let compiled = system(&sections, "");
     let results = crate::lab::traced(&compiled);
     let flux = &results.detectors["fpa"].flux_w;
@@ -231,7 +240,9 @@ fn geo_04_mirrored_instance() {
             lens.form(side)
         )
     };
-    let mirrored = |entries: &str| entries.replace("(0, 0, -1)", "(0, 0, 9)").replace("(0, 0, 1)", "(0, 0, -1)").replace("(0, 0, 9)", "(0, 0, 1)");
+    let mirrored = |entries: &str| {
+        entries.replace("(0, 0, -1)", "(0, 0, 9)").replace("(0, 0, 1)", "(0, 0, -1)").replace("(0, 0, 9)", "(0, 0, 1)")
+    };
     let entries = entry(0, 0.0) + &entry(1, lens.thickness);
     let gltf = Model::new().add("lens", lens.mesh(6, 64)).gltf();
     let plain = system(&lens.sections(&entries, case.given("/n")), &gltf);
@@ -242,6 +253,9 @@ fn geo_04_mirrored_instance() {
         let a = through(&plain, DVec3::new(0.3, y, -50.0), DVec3::Z);
         let b = through(&turned, DVec3::new(0.3, y, 50.0), -DVec3::Z);
         let back = DVec3::new(1.0, 1.0, -1.0);
-        assert!((a.origin - back * b.origin).length() < 1e-9 && (a.direction - back * b.direction).length() < 1e-12, "{a:?} {b:?}");
+        assert!(
+            (a.origin - back * b.origin).length() < 1e-9 && (a.direction - back * b.direction).length() < 1e-12,
+            "{a:?} {b:?}"
+        );
     }
 }

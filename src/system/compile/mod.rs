@@ -18,9 +18,9 @@ use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
 use glam::DVec3;
+pub use parts::{parts_of_file, parts_of_system};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-pub use parts::{parts_of_file, parts_of_system};
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
@@ -90,6 +90,13 @@ pub struct Placed {
     /// World coordinates minus those of the scene, m.
     pub shift: DVec3,
     pub warnings: Vec<Problem>,
+}
+
+impl Placed {
+    /// The parts as a binary glTF file.
+    pub fn glb(&self) -> Vec<u8> {
+        super::gltf::glb(&self.nodes, self.shift)
+    }
 }
 
 /// Reads and places the geometry of a document; everything else must be right as well.

@@ -23,8 +23,8 @@ mod write;
 
 use crate::error::{Problem, Severity};
 use crate::geometry::mesh::{Mesh, Repairs};
-use accessor::Store;
 use crate::system::exact::Declared;
+use accessor::Store;
 use container::Container;
 use document::Root;
 use glam::{DAffine3, DVec3};

@@ -116,7 +116,8 @@ pub(super) fn holders(scene: &Scene, assembly: &Assembly, node: usize, touching:
         tried += 1;
         let [a, b, c] = corners;
         // The middle of a facet that an exact face stands for is off that face: inwards by more than its sagitta.
-        let inwards = if exact.contains(&(triangle - first)) { 0.05 * (b - a).length().max((c - b).length()) } else { 0.0 };
+        let inwards =
+            if exact.contains(&(triangle - first)) { 0.05 * (b - a).length().max((c - b).length()) } else { 0.0 };
         let middle = (a + b + c) / 3.0 - inwards * (b - a).cross(c - a).normalize_or_zero();
         for holder in around(scene, &closed, middle).into_iter().filter(|&holder| holder as usize != node) {
             *held.entry(holder).or_default() += 1;
