@@ -9,7 +9,7 @@ use straylight::system::compile::{compile, understand};
 use straylight::system::document::Document;
 use straylight::system::lens;
 
-#[allow(dead_code, unused_macros, unused_imports, reason = "one harness, several test targets")]
+#[allow(unused_imports, reason = "one harness, several test targets")]
 #[macro_use]
 #[path = "support/mod.rs"]
 mod support;

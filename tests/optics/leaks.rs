@@ -16,9 +16,9 @@ fn rays(lens: &Singlet, count: u64, seed: u64) -> Vec<Ray> {
     let ray = |i: u64| {
         let mut rng = Rng::new(seed, i, 0);
         let side = (rng.uniform() * 2.0) as usize;
-        let angle = TAU * if i % 3 == 0 { (rng.uniform() * 24.0).floor() / 24.0 } else { rng.uniform() };
+        let angle = TAU * if i.is_multiple_of(3) { (rng.uniform() * 24.0).floor() / 24.0 } else { rng.uniform() };
         let rim = (lens.half * DVec2::from_angle(angle)).extend(lens.sag(side, lens.half));
-        let spread = if i % 2 == 0 { 10f64.powf(-9.0 * rng.uniform()) } else { lens.half };
+        let spread = if i.is_multiple_of(2) { 10f64.powf(-9.0 * rng.uniform()) } else { lens.half };
         let target = rim + spread * sampling::sphere(rng.pair());
         let origin = 60.0 * sampling::sphere(rng.pair());
         Ray { origin: 1e-3 * origin, direction: (target - origin).normalize() }
