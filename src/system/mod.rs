@@ -4,6 +4,7 @@ pub mod compile;
 pub mod document;
 pub mod elements;
 pub mod exact;
+pub mod expression;
 pub mod gltf;
 pub mod schema;
 pub mod select;

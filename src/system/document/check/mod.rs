@@ -8,6 +8,7 @@ use super::{Body, Document, Run, read};
 use crate::error::{Problem, did_you_mean};
 use crate::system::units::Wavelength;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Shares given as decimals add up to 1 within the rounding of their sum: half an ulp for each of at most 64 terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -80,7 +81,7 @@ impl<'a> Checker<'a> {
         if self.problems.len() >= MOST {
             return;
         }
-        self.problems.push(problem.on(path).at(self.document.span(path)));
+        self.problems.push(self.document.problem(path, problem));
     }
 
     /// Takes a problem down if something that must hold does not.
@@ -95,7 +96,7 @@ impl<'a> Checker<'a> {
         if !holds {
             let written = read::steps(path)
                 .and_then(|steps| self.document.tree.find(&steps))
-                .map_or("", |node| &self.document.text[node.start..node.end]);
+                .map_or(String::new(), |node| self.document.script.read(node.start..node.end));
             self.push(path, Problem::error(format!("{written} is out of range")).expecting(expected));
         }
     }
@@ -219,13 +220,16 @@ impl<'a> Checker<'a> {
     fn geometry(&mut self) {
         let document = self.document;
         for (at, geometry) in document.indices.geometry.iter().zip(&document.system.geometry) {
-            let path = format!("geometry[{at}].file");
-            let extension = geometry.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
-            self.require(matches!(extension.as_str(), "glb" | "gltf"), &path, || {
-                Problem::error(format!("{:?} is not a glTF file", geometry.file.display().to_string()))
-                    .expecting("a file that ends in .glb or .gltf")
-            });
+            self.gltf(&geometry.file, &format!("geometry[{at}].file"));
         }
+    }
+
+    fn gltf(&mut self, file: &Path, path: &str) {
+        let extension = file.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
+        self.require(matches!(extension.as_str(), "glb" | "gltf"), path, || {
+            Problem::error(format!("{:?} is not a glTF file", file.display().to_string()))
+                .expecting("a file that ends in .glb or .gltf")
+        });
     }
 
     /// Media that elements name; their shapes are judged when they are built.
