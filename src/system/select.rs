@@ -97,11 +97,14 @@ fn union(mut all: Vec<Picked>) -> Vec<Picked> {
 
 /// Whether a pattern means this node: its name, its path, or the name or path of a node above it.
 pub fn named(pattern: &str, node: &Node) -> bool {
-    let path = node.path.as_str();
-    let ends = path.match_indices('/').map(|(at, _)| at).chain([path.len()]);
-    matches(pattern, &node.name)
-        || path.split('/').any(|name| matches(pattern, name))
-        || ends.into_iter().any(|end| matches(pattern, &path[..end]))
+    matches(pattern, &node.name) || owner(pattern, &node.path).is_some()
+}
+
+/// Where in a path the first node ends that a pattern means by its name or path.
+pub fn owner(pattern: &str, path: &str) -> Option<usize> {
+    let mut ends = path.match_indices('/').map(|(at, _)| at).chain([path.len()]);
+    let name = |path: &str| path.rfind('/').map_or(0, |at| at + 1);
+    ends.find(|&end| matches(pattern, &path[..end]) || matches(pattern, &path[name(&path[..end])..end]))
 }
 
 fn carries(node: &Node, key: &str, pattern: &str) -> bool {

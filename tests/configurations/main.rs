@@ -1,5 +1,8 @@
 //! One system in several states: parameters, includes, nodes that are hidden, moved or replaced, and a CAD file that changed.
 
+#[path = "../bricks/mod.rs"]
+mod bricks;
+mod configure;
 mod includes;
 mod parameters;
 

@@ -1,7 +1,9 @@
 //! The compiler: from the document and its geometry to a scene. All problems at once, not the first.
 
+mod alias;
 mod assembly;
 mod assign;
+mod configure;
 mod exact;
 mod lights;
 mod media;

@@ -6,6 +6,7 @@
 
 mod check;
 mod coating;
+mod configure;
 mod detector;
 mod element;
 mod entry;
@@ -24,6 +25,7 @@ mod surface;
 mod tree;
 
 pub use coating::{Coating, Specular};
+pub use configure::{About, Change, Replacement};
 pub use detector::{Bins, Detector, Quantity, Receiver};
 pub use element::{Body, Element, Optical};
 pub use exact::{Exact, Form, Relative};
@@ -59,6 +61,10 @@ pub struct System {
     pub geometry: Vec<Geometry>,
     /// Shapes written here, by name.
     pub elements: Names<Element>,
+    /// Names of nodes and materials in the files, and what the system calls them.
+    pub aliases: Names<String>,
+    /// What is done to nodes once they are placed, in order.
+    pub configure: Vec<Change>,
     /// The medium around everything: a name in `media`, or "vacuum".
     pub ambient: String,
     /// Media by name. "vacuum" is always there.
@@ -101,6 +107,7 @@ pub struct Document {
 #[derive(Debug, Clone, Default)]
 struct Indices {
     geometry: Vec<usize>,
+    configure: Vec<usize>,
     surfaces: Vec<usize>,
 }
 
@@ -236,6 +243,10 @@ impl Document {
         let mut files: Vec<(String, &Path)> = Vec::new();
         for (at, geometry) in self.indices.geometry.iter().zip(&self.system.geometry) {
             files.push((format!("geometry[{at}].file"), &geometry.file));
+        }
+        for (at, change) in self.indices.configure.iter().zip(&self.system.configure) {
+            let with = change.replace.iter();
+            files.extend(with.map(|with| (format!("configure[{at}].replace.file"), with.file.as_path())));
         }
         for (name, medium) in self.system.media.iter() {
             files.extend(medium.file().map(|file| (format!("media[{name:?}].file"), file)));

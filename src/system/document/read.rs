@@ -18,6 +18,8 @@ pub const SECTIONS: &[&str] = &[
     "configurations",
     "geometry",
     "elements",
+    "aliases",
+    "configure",
     "ambient",
     "media",
     "coatings",
@@ -55,12 +57,15 @@ impl<'a> Reader<'a> {
         let _: Names<IgnoredAny> = self.map(root, "parameters");
         let _: Names<BTreeMap<String, IgnoredAny>> = self.map(root, "configurations");
         let (geometry, geometry_at) = self.list(root, "geometry");
+        let (configure, configure_at) = self.list(root, "configure");
         let (surfaces, surfaces_at) = self.list(root, "surfaces");
         let system = System {
             name: self.single(root, "name"),
             include: self.list(root, "include").0,
             geometry,
             elements: self.map(root, "elements"),
+            aliases: self.map(root, "aliases"),
+            configure,
             ambient: self.single(root, "ambient").unwrap_or_else(|| "vacuum".to_owned()),
             media: self.map(root, "media"),
             coatings: self.map(root, "coatings"),
@@ -71,7 +76,7 @@ impl<'a> Reader<'a> {
             detectors: self.map(root, "detectors"),
             run: self.single(root, "run").unwrap_or_default(),
         };
-        (system, Indices { geometry: geometry_at, surfaces: surfaces_at })
+        (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at })
     }
 
     /// Refuses what is not a system, and sections that are unknown or given twice.

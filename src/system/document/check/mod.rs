@@ -4,7 +4,7 @@ mod light;
 mod optics;
 
 use super::tree::Shape;
-use super::{Body, Document, Run, read};
+use super::{About, Body, Document, Run, read};
 use crate::error::{Problem, did_you_mean};
 use crate::system::units::Wavelength;
 use std::collections::BTreeSet;
@@ -61,6 +61,7 @@ impl Document {
         let mut checker = Checker { document: self, problems: Vec::new(), used: BTreeSet::new() };
         checker.geometry();
         checker.elements();
+        checker.configure();
         checker.media();
         checker.coatings();
         checker.scatter();
@@ -230,6 +231,33 @@ impl<'a> Checker<'a> {
             Problem::error(format!("{:?} is not a glTF file", file.display().to_string()))
                 .expecting("a file that ends in .glb or .gltf")
         });
+    }
+
+    fn configure(&mut self) {
+        let document = self.document;
+        for (at, change) in document.indices.configure.iter().zip(&document.system.configure) {
+            let path = format!("configure[{at}]");
+            self.not_empty(&change.node, &format!("{path}.node"), "the name of the node");
+            let moves = change.scale.is_some() || change.rotate.is_some() || change.shift.is_some();
+            let acts = moves || change.replace.is_some();
+            self.require(change.hide != acts, &path, || {
+                let what = if acts { "a hidden node is not changed" } else { "this changes nothing" };
+                Problem::error(what).expecting("`hide: true`, or `replace`, `scale`, `rotate`, `move`")
+            });
+            self.require(moves || change.about == About::Own, &format!("{path}.about"), || {
+                Problem::error("nothing is given in this frame").expecting("`scale`, `rotate` or `move`")
+            });
+            if let Some((x, y, z)) = change.scale {
+                for (axis, factor) in [x, y, z].into_iter().enumerate() {
+                    let holds = factor != 0.0 && factor.is_finite();
+                    self.range(holds, &format!("{path}.scale[{axis}]"), "a factor that is not 0");
+                }
+            }
+            if let Some(replacement) = &change.replace {
+                self.gltf(&replacement.file, &format!("{path}.replace.file"));
+                self.not_empty(&replacement.node, &format!("{path}.replace.node"), "the name of the node");
+            }
+        }
     }
 
     /// Media that elements name; their shapes are judged when they are built.
