@@ -16,6 +16,8 @@ fn main() -> ExitCode {
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
         Verb::Export(args) => cli::export::export(&args),
+        Verb::Import(args) => cli::import::import(&args),
+        Verb::Fit(args) => cli::fit::fit(&args),
         Verb::Schema => cli::schema::schema(),
     };
     cli::conclude(done)

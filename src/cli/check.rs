@@ -1,7 +1,7 @@
 //! `straylight check`: what was understood of a system.
 
 use super::table::{Table, digits, direction, millimetres};
-use super::{Chosen, Ending, tell, warn};
+use super::{Chosen, Ending, optics, tell, warn};
 use clap::Args;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
@@ -50,6 +50,7 @@ pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
         parts(&facts),
         budgets(&facts.budgets),
         sources(scene, &facts.beams),
+        optics::section(&facts),
         detectors(scene),
         memory(&facts),
     ];

@@ -2,6 +2,9 @@
 
 pub mod check;
 pub mod export;
+pub mod fit;
+pub mod import;
+mod optics;
 pub mod ray;
 pub mod run;
 pub mod schema;
@@ -44,6 +47,10 @@ pub enum Verb {
     Ray(ray::RayArgs),
     /// Write the geometry of a system as glTF
     Export(export::ExportArgs),
+    /// Turn a lens of a design program into a system
+    Import(import::ImportArgs),
+    /// Find the planes, spheres, conics and cylinders that a mesh was made from
+    Fit(fit::FitArgs),
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,

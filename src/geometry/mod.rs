@@ -3,6 +3,7 @@
 mod bvh;
 mod crossing;
 pub mod exact;
+pub mod fit;
 pub mod frame;
 mod leaf;
 pub mod mesh;

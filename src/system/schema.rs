@@ -69,6 +69,9 @@ mod tests {
         fields::<Change>();
         fields::<Replacement>();
         options::<About>();
+        fields::<Element>();
+        fields::<Optical>();
+        fields::<Exact>();
         fields::<Surface>();
         fields::<Finish>();
         fields::<Source>();
@@ -76,6 +79,9 @@ mod tests {
         fields::<Run>();
         fields::<Roulette>();
         options::<Up>();
+        options::<Body>();
+        options::<Form>();
+        options::<Relative>();
         options::<Medium>();
         options::<Coating>();
         options::<Specular>();

@@ -136,6 +136,16 @@ pub fn shot(compiled: &Compiled, rays: &[Ray]) -> Trace {
     })
 }
 
+/// A ray of 1 W of unpolarised light of a vacuum wavelength (m), in world coordinates (m), watched.
+pub fn shot_at(compiled: &Compiled, ray: Ray, wavelength: f64) -> Trace {
+    follow(compiled, |walk| {
+        let ray = Ray { origin: ray.origin - compiled.scene.shift, ..ray };
+        let birth = Birth { ray, from: None, wavelength, transverse: ray.direction.any_orthonormal_vector() };
+        let mut packet = walk.born(0, 0, birth, 1.0, straylight::math::Rng::new(1, 0, 0));
+        walk.history(&mut packet);
+    })
+}
+
 /// A ray of 1 W of unpolarised light of 550 nm that may start inside a solid, in world coordinates (m), watched.
 pub fn shot_from(compiled: &Compiled, ray: Ray) -> Trace {
     follow(compiled, |walk| {

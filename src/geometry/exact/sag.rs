@@ -35,6 +35,13 @@ pub enum Sag {
 }
 
 impl Sag {
+    /// The conic that the terms are added to.
+    pub fn base(&self) -> &Conic {
+        match self {
+            Sag::Asphere { base, .. } | Sag::Polynomial { base, .. } | Sag::Toroid { base, .. } => base,
+        }
+    }
+
     /// s, ds/dx, ds/dy at (x, y) m; NaN where there is no surface.
     pub fn at(&self, x: f64, y: f64) -> [f64; 3] {
         match self {

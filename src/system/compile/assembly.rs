@@ -99,7 +99,7 @@ fn turn(placed: &written::Geometry) -> DMat3 {
 }
 
 /// Scaled by the unit, turned, then moved.
-fn place(mut node: Node, placed: &written::Geometry) -> Node {
+pub(super) fn place(mut node: Node, placed: &written::Geometry) -> Node {
     let turn = turn(placed);
     let unit = placed.unit.0;
     for vertex in &mut node.mesh.vertices {
@@ -120,7 +120,7 @@ fn frame(frame: &DAffine3, placed: &written::Geometry) -> DAffine3 {
 }
 
 /// Names that occur twice become their paths, and those get numbers if they still do.
-fn make_unique(nodes: &mut [Node]) {
+pub(super) fn make_unique(nodes: &mut [Node]) {
     let taken = |nodes: &[Node], i: usize, name: &str| nodes.iter().enumerate().any(|(j, n)| j != i && n.name == name);
     let twice: Vec<usize> = (0..nodes.len()).filter(|&i| taken(nodes, i, &nodes[i].name.clone())).collect();
     for i in twice {

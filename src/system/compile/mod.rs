@@ -8,6 +8,7 @@ mod exact;
 mod lights;
 mod media;
 mod models;
+mod parts;
 mod receivers;
 pub mod understanding;
 
@@ -21,6 +22,7 @@ use assembly::Assembly;
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+pub use parts::{parts_of_file, parts_of_system};
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
@@ -84,7 +86,7 @@ pub fn compile(document: &Document) -> Result<Compiled, Error> {
 /// Compiles a document and says what was understood of it.
 pub fn understand(document: &Document) -> Result<(Compiled, Understanding), Error> {
     let (compiled, assembly) = build(document)?;
-    let understanding = understanding::understand(&compiled.scene, &assembly, &compiled.settings);
+    let understanding = understanding::understand(&compiled.scene, &assembly, &compiled.settings, document);
     Ok((compiled, understanding))
 }
 

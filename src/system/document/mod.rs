@@ -37,7 +37,7 @@ pub use read::SECTIONS;
 pub use run::{Roulette, Run, Until};
 pub use scatter::{Scatter, ScatterSide};
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
-pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface};
+pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 
 use crate::error::{Error, Problem, Span};
 use manuscript::Manuscript;

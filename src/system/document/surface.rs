@@ -189,7 +189,7 @@ pub enum Predicate {
         /// The point, m.
         point: Position,
         /// Neighbours belong to one region where their normals differ by no more than this, rad.
-        #[serde(default = "smooth")]
+        #[serde(default = "default_smooth")]
         smooth: Angle,
     },
     /// What all of these hold for.
@@ -239,6 +239,7 @@ impl<'de> Deserialize<'de> for ExtrasValue {
     }
 }
 
-fn smooth() -> Angle {
+/// The largest angle between neighbours on a smooth face, rad.
+pub fn default_smooth() -> Angle {
     Angle(20_f64.to_radians())
 }

@@ -4,16 +4,19 @@ mod beam;
 mod budget;
 mod contact;
 mod doubt;
+mod optics;
 
 use super::assembly::Assembly;
 use crate::geometry::mesh::Topology;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::Settings;
+use crate::system::document::Document;
 use glam::DVec3;
 
 pub use beam::Beam;
 pub use budget::{ANGLES, Budget, Share};
 pub(super) use doubt::doubts;
+pub use optics::Optics;
 
 /// Facts about a compiled system, in the order of its nodes, parts and sources.
 #[derive(Clone, Debug)]
@@ -25,6 +28,8 @@ pub struct Understanding {
     /// Where light goes on every surface, once for each pair of media that it lies between.
     pub budgets: Vec<Budget>,
     pub beams: Vec<Beam>,
+    /// First-order data of the elements, or why there are none; `None` without lenses and mirrors among them.
+    pub optics: Option<Result<Optics, String>>,
     pub memory: Memory,
 }
 
@@ -73,7 +78,12 @@ pub struct Memory {
 }
 
 /// Collects the facts. Some thousand rays per source and up to 1e5 in all are traced to see what touches and what holds what.
-pub(super) fn understand(scene: &Scene, assembly: &Assembly, settings: &Settings) -> Understanding {
+pub(super) fn understand(
+    scene: &Scene,
+    assembly: &Assembly,
+    settings: &Settings,
+    document: &Document,
+) -> Understanding {
     let [low, high] = scene.geometry.bounds();
     Understanding {
         bounds: [low + scene.shift, high + scene.shift],
@@ -81,6 +91,7 @@ pub(super) fn understand(scene: &Scene, assembly: &Assembly, settings: &Settings
         parts: parts(scene, assembly),
         budgets: budget::budgets(scene),
         beams: scene.sources.iter().map(|source| beam::beam(scene, source)).collect(),
+        optics: optics::optics(scene, document),
         memory: memory(scene, settings),
     }
 }
