@@ -1,5 +1,6 @@
 //! `straylight check`: what was understood of a system.
 
+use super::against::against;
 use super::table::{Table, digits, direction, millimetres};
 use super::{Chosen, Ending, optics, tell, warn};
 use clap::Args;
@@ -24,11 +25,16 @@ pub struct CheckArgs {
     pub system: PathBuf,
     #[command(flatten)]
     pub chosen: Chosen,
+    /// Older state, a system (.ron) or a glTF file: tell first what is new, lost, renamed or moved since
+    #[arg(long, value_name = "OLD")]
+    pub against: Option<PathBuf>,
 }
 
 const EXAMPLE: &str = "\
 Example:
   straylight check systems/triplet/system.ron
+
+  straylight check system.ron --against old.glb
 
 Reads everything, traces nothing: solids, which part got which surface and medium, what each surface
 does with the light, whether the beams cover the scene, where the pixels are, memory. All problems of
@@ -39,7 +45,11 @@ const MOST: usize = 200;
 
 /// Reads a system and prints what was understood.
 pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
-    let (compiled, facts) = understand(&args.chosen.read(&args.system)?)?;
+    let document = args.chosen.read(&args.system)?;
+    if let Some(older) = &args.against {
+        tell(&against(&document, older)?);
+    }
+    let (compiled, facts) = understand(&document)?;
     warn(&compiled.warnings);
     let scene = &compiled.scene;
     let sections = [

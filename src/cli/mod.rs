@@ -1,5 +1,6 @@
 //! The command line: one file per verb. The only place that prints.
 
+mod against;
 pub mod check;
 pub mod export;
 pub mod fit;

@@ -10,6 +10,7 @@
 use crate::geometry::mesh::Mesh;
 use crate::system::gltf::Node;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// A choice of triangles.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +154,9 @@ struct Face<'a> {
 
 fn faces(nodes: &[Node], of: &str, predicate: &Predicate, smooth: f64) -> Vec<Picked> {
     let matching = nodes.iter().enumerate().filter(|(_, node)| named(of, node));
-    let all = matching.flat_map(|(i, node)| split(i, &node.mesh, smooth)).collect();
+    // What is written of a face is written of where the file has it.
+    let meshes: Vec<(usize, Cow<Mesh>)> = matching.map(|(i, node)| (i, node.at_rest())).collect();
+    let all = meshes.iter().flat_map(|(i, mesh)| split(*i, mesh, smooth)).collect();
     let chosen = choose(predicate, all);
     union(chosen.into_iter().map(|face| Picked { node: face.node, triangles: face.triangles }).collect())
 }

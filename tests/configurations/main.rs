@@ -1,5 +1,6 @@
 //! One system in several states: parameters, includes, nodes that are hidden, moved or replaced, and a CAD file that changed.
 
+mod against;
 #[path = "../bricks/mod.rs"]
 mod bricks;
 mod configure;

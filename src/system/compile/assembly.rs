@@ -148,6 +148,8 @@ impl Assembly {
             node.mesh.vertices.iter_mut().for_each(|vertex| *vertex -= shift);
             node.exact.iter_mut().for_each(|declared| declared.at -= shift);
             node.frame.translation -= shift;
+            let [there, back] = [shift, -shift].map(DAffine3::from_translation);
+            node.moved = if node.moved == DAffine3::IDENTITY { node.moved } else { back * node.moved * there };
             self.first.push(next);
             next += node.mesh.triangles.len() as u32;
         }

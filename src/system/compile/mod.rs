@@ -1,5 +1,6 @@
 //! The compiler: from the document and its geometry to a scene. All problems at once, not the first.
 
+pub mod against;
 mod alias;
 mod assembly;
 mod assign;
@@ -20,9 +21,9 @@ use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
 use glam::DVec3;
+pub use parts::{parts_of_file, parts_of_system};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-pub use parts::{parts_of_file, parts_of_system};
 pub use understanding::Understanding;
 
 /// A system ready to be traced.

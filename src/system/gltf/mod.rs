@@ -28,6 +28,7 @@ use accessor::Store;
 use container::Container;
 use document::Root;
 use glam::{DAffine3, DVec3};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 pub use write::glb;
 
@@ -76,7 +77,7 @@ pub struct Node {
     pub medium: Option<String>,
     /// True if it was written in the system: its tags name its faces.
     pub is_element: bool,
-    /// How it was moved after it was placed: from where the file has it to where it is, world, m.
+    /// How it was moved after it was placed, in the coordinates of the mesh: from where the file has it to where it is, m.
     pub moved: DAffine3,
 }
 
@@ -84,6 +85,16 @@ impl Node {
     /// Name of the material of triangle `i`, "" for none.
     pub fn tag(&self, i: usize) -> &str {
         &self.tags[self.mesh.labels[i] as usize]
+    }
+
+    /// The mesh where the file has it.
+    pub fn at_rest(&self) -> Cow<'_, Mesh> {
+        if self.moved == DAffine3::IDENTITY {
+            return Cow::Borrowed(&self.mesh);
+        }
+        let mut mesh = self.mesh.clone();
+        mesh.transform(&self.moved.inverse());
+        Cow::Owned(mesh)
     }
 
     /// Corners of triangle `i`, m, counter-clockwise seen from outside.

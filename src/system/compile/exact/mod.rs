@@ -129,9 +129,9 @@ fn declared(exact: &written::Exact, node: &mut Node, mut triangles: Vec<u32>, sh
 fn placed(exact: &written::Exact, node: &Node, shift: DVec3) -> (DVec3, Frame) {
     let x = exact.x.map_or(DVec3::X, |x| x.0);
     match exact.relative {
-        // What is written of the world is written of it before `configure`.
+        // What is written of a face is written of where the file has it.
         written::Relative::World => {
-            let at = node.moved.transform_point3(exact.vertex.0) - shift;
+            let at = node.moved.transform_point3(exact.vertex.0 - shift);
             let turned = |v: DVec3| node.moved.transform_vector3(v);
             (at, Frame::from_z_x(turned(exact.axis.0), turned(x)))
         }
