@@ -211,6 +211,7 @@ fn results() -> Results {
             ("triplet.ron".into(), "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into()),
             ("triplet.glb".into(), "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into()),
         ]),
+        parameters: BTreeMap::from([("hood.length".into(), "120 mm".into())]),
         path_grid: 16,
         paths: paths(),
         maps: maps(),

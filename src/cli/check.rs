@@ -1,8 +1,10 @@
 //! `straylight check`: what was understood of a system.
 
+use super::against::against;
 use super::table::{Table, digits, direction, millimetres};
-use super::{Ending, optics, tell, warn};
+use super::{Chosen, Ending, optics, tell, warn};
 use clap::Args;
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::path::PathBuf;
 use straylight::detector::{Detector, Place};
@@ -14,7 +16,6 @@ use straylight::source::extent::{Extent, Outline};
 use straylight::source::{Source, Spectrum};
 use straylight::system::compile::understanding::{ANGLES, Beam, Budget, NodeFacts, Share};
 use straylight::system::compile::{Understanding, understand};
-use straylight::system::document::Document;
 use straylight::tally::results::MapKind;
 
 #[derive(Args)]
@@ -22,11 +23,18 @@ use straylight::tally::results::MapKind;
 pub struct CheckArgs {
     /// System file (RON); `straylight schema` prints its grammar
     pub system: PathBuf,
+    #[command(flatten)]
+    pub chosen: Chosen,
+    /// Older state, a system (.ron) or a glTF file: tell first what is new, lost, renamed or moved since
+    #[arg(long, value_name = "OLD")]
+    pub against: Option<PathBuf>,
 }
 
 const EXAMPLE: &str = "\
 Example:
   straylight check systems/triplet/system.ron
+
+  straylight check system.ron --against old.glb
 
 Reads everything, traces nothing: solids, which part got which surface and medium, what each surface
 does with the light, whether the beams cover the scene, where the pixels are, memory. All problems of
@@ -37,11 +45,16 @@ const MOST: usize = 200;
 
 /// Reads a system and prints what was understood.
 pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
-    let (compiled, facts) = understand(&Document::read(&args.system)?)?;
+    let document = args.chosen.read(&args.system)?;
+    if let Some(older) = &args.against {
+        tell(&against(&document, older)?);
+    }
+    let (compiled, facts) = understand(&document)?;
     warn(&compiled.warnings);
     let scene = &compiled.scene;
     let sections = [
         head(scene, &facts),
+        parameters(&compiled.parameters),
         nodes(&facts.nodes),
         media(scene),
         parts(&facts),
@@ -51,7 +64,7 @@ pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
         detectors(scene),
         memory(&facts),
     ];
-    tell(&sections.join("\n"));
+    tell(&sections.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("\n"));
     let count = compiled.warnings.len();
     let verdict = if count == 0 { "no warnings".into() } else { format!("{count} on standard error") };
     tell(&format!("\nWarnings\n  {verdict}\n"));
@@ -70,6 +83,12 @@ fn head(scene: &Scene, facts: &Understanding) -> String {
         facts.nodes.len(),
         scene.media[scene.ambient as usize].label,
     )
+}
+
+fn parameters(values: &BTreeMap<String, String>) -> String {
+    let mut table = Table::new(["parameter", "value"], &[]);
+    values.iter().take(MOST).for_each(|(name, value)| table.row([name.clone(), value.clone()]));
+    if values.is_empty() { String::new() } else { section("Parameters", &table, values.len()) }
 }
 
 /// A title, a table and how many rows are not in it.

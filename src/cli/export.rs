@@ -1,13 +1,12 @@
 //! `straylight export`: the geometry of a system as one glTF file.
 
-use super::{Ending, tell, warn};
+use super::{Chosen, Ending, tell, warn};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
 use straylight::error::Error;
 use straylight::report;
 use straylight::system::compile::geometry;
-use straylight::system::document::Document;
 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
@@ -16,6 +15,8 @@ pub struct ExportArgs {
     pub system: PathBuf,
     /// What to write (.glb)
     pub file: PathBuf,
+    #[command(flatten)]
+    pub chosen: Chosen,
 }
 
 const EXAMPLE: &str = "\
@@ -30,7 +31,7 @@ pub fn export(args: &ExportArgs) -> Result<Ending, Error> {
     if args.file.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("glb")) {
         return Err(Error::Usage(format!("{} does not end in .glb", args.file.display())));
     }
-    let placed = geometry(&Document::read(&args.system)?)?;
+    let placed = geometry(&args.chosen.read(&args.system)?)?;
     warn(&placed.warnings);
     let bytes = placed.glb();
     let failed = |source| Error::Io { path: args.file.clone(), source };

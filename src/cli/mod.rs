@@ -1,5 +1,6 @@
 //! The command line: one file per verb. The only place that prints.
 
+mod against;
 pub mod check;
 pub mod export;
 pub mod fit;
@@ -11,14 +12,14 @@ pub mod schema;
 mod stop;
 mod table;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use straylight::error::{Error, Problem};
 use straylight::report::problems;
 use straylight::system::compile::{Compiled, compile};
-use straylight::system::document::Document;
+use straylight::system::document::{Choice, Document};
 
 /// Threads that may be asked for.
 const THREADS: std::ops::RangeInclusive<i64> = 1..=4096;
@@ -54,6 +55,37 @@ pub enum Verb {
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,
+}
+
+/// What is chosen of a system.
+#[derive(Args)]
+pub struct Chosen {
+    /// Parameter of the system and its value: hood.length="120 mm"; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<(String, String)>,
+    /// Named set of parameters, from the system's `configurations`
+    #[arg(long, value_name = "NAME")]
+    pub configuration: Option<String>,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, such as hood.length=\"120 mm\"")?;
+    Ok((name.trim().to_owned(), value.trim().to_owned()))
+}
+
+impl Chosen {
+    /// Reads a system with its parameters so chosen.
+    pub fn read(&self, system: &Path) -> Result<Document, Error> {
+        let choice = Choice { configuration: self.configuration.clone(), set: self.set.clone() };
+        Document::choose(system, &choice)
+    }
+
+    /// As arguments of a command line.
+    pub fn command(&self) -> String {
+        let set = self.set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
+        let named = self.configuration.iter().map(|name| format!(" --configuration {name:?}"));
+        named.chain(set).collect()
+    }
 }
 
 /// How a verb ended.
@@ -106,8 +138,8 @@ fn text_of(path: &Path) -> Option<String> {
 }
 
 /// Reads and compiles a system; warnings go to standard error.
-pub fn load(system: &Path) -> Result<Compiled, Error> {
-    let compiled = compile(&Document::read(system)?)?;
+pub fn load(system: &Path, chosen: &Chosen) -> Result<Compiled, Error> {
+    let compiled = compile(&chosen.read(system)?)?;
     warn(&compiled.warnings);
     Ok(compiled)
 }

@@ -1,7 +1,7 @@
 //! `straylight ray`: one packet of 1 W and everything that happens to it, by the tracer that runs use.
 
 use super::table::{Table, digits, direction, millimetres};
-use super::{Ending, load, tell};
+use super::{Chosen, Ending, load, tell};
 use clap::Args;
 use glam::DVec3;
 use std::path::PathBuf;
@@ -43,6 +43,8 @@ pub struct RayArgs {
     /// Seed of what is drawn
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
+    #[command(flatten)]
+    pub chosen: Chosen,
 }
 
 const EXAMPLE: &str = "\
@@ -64,7 +66,7 @@ fn text<T: FromText>(written: &str) -> Result<T, String> {
 
 /// Traces it.
 pub fn ray(args: &RayArgs) -> Result<Ending, Error> {
-    let compiled = load(&args.system)?;
+    let compiled = load(&args.system, &args.chosen)?;
     let scene = &compiled.scene;
     let settings = Settings {
         splits: args.splits.unwrap_or(compiled.settings.splits),

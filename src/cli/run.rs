@@ -1,7 +1,7 @@
 //! `straylight run`: trace a system and write a report.
 
 use super::stop::Stop;
-use super::{Ending, THREADS, load, say, tell};
+use super::{Chosen, Ending, THREADS, load, say, tell};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -39,6 +39,8 @@ pub struct RunArgs {
     /// Stop early at this relative standard error: "1 % on fpa"
     #[arg(long, value_name = "ERROR")]
     pub until: Option<String>,
+    #[command(flatten)]
+    pub chosen: Chosen,
 }
 
 const EXAMPLE: &str = "\
@@ -64,7 +66,7 @@ fn count(text: &str) -> Result<u64, String> {
 
 /// Runs it.
 pub fn run(args: &RunArgs) -> Result<Ending, Error> {
-    let compiled = load(&args.system)?;
+    let compiled = load(&args.system, &args.chosen)?;
     let settings = settings(args, &compiled)?;
     // Before the work, not after it.
     writable(&args.output)?;
@@ -87,6 +89,7 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
     let seconds = start.elapsed().as_secs_f64();
     let warnings = compiled.warnings.iter().map(ToString::to_string).collect();
     let results = summary::results(&compiled.scene, &settings, &counts, 0, compiled.inputs, warnings);
+    let results = Results { parameters: compiled.parameters, ..results };
     let info = info(args, &settings, &counts, &results, pool.current_num_threads(), seconds);
     tell(&report::text(&results, &info));
     let written = report::write(&args.output, &results, &info)
@@ -157,11 +160,12 @@ fn host() -> String {
 fn command(args: &RunArgs, settings: &Settings) -> String {
     let until = args.until.as_ref().map(|text| format!(" --until {text:?}")).unwrap_or_default();
     format!(
-        "straylight run {} -o {} --rays {} --seed {}{until}",
+        "straylight run {} -o {} --rays {} --seed {}{until}{}",
         args.system.display(),
         args.output.display(),
         settings.rays,
-        settings.seed
+        settings.seed,
+        args.chosen.command()
     )
 }
 

@@ -1,6 +1,14 @@
 //! An orthonormal right-handed frame: change of coordinates happens here and nowhere else.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+
+/// The right-handed rotation by these angles (rad) about the fixed axes x, then y, then z. No angle costs no digit.
+pub fn rotation(angles: DVec3) -> DMat3 {
+    if angles == DVec3::ZERO {
+        return DMat3::IDENTITY;
+    }
+    DMat3::from_rotation_z(angles.z) * DMat3::from_rotation_y(angles.y) * DMat3::from_rotation_x(angles.x)
+}
 
 /// Columns x, y, z: unit vectors, right-handed (x cross y = z).
 #[derive(Clone, Copy, Debug, PartialEq)]

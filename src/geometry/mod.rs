@@ -16,6 +16,6 @@ mod wide;
 
 pub use bvh::{Body, Bvh};
 pub use crossing::{Crossing, Hit, Left, MOST_COINCIDENT};
-pub use frame::Frame;
+pub use frame::{Frame, rotation};
 pub use ray::Ray;
 pub use triangle::Triangle;

@@ -41,6 +41,10 @@ fn heading(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
         write!(out, " ({} requested)", grouped(results.rays_requested, " "))?;
     }
     writeln!(out, "; {:.1} s on {} threads", run.seconds, run.threads)?;
+    if !results.parameters.is_empty() {
+        let all: Vec<String> = results.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        writeln!(out, "parameters: {}", all.join(", "))?;
+    }
     if run.interrupted {
         writeln!(out, "interrupted: what was finished is below")?;
     }

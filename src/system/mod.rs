@@ -7,6 +7,7 @@ pub mod compile;
 pub mod document;
 pub mod elements;
 pub mod exact;
+pub mod expression;
 pub mod fit;
 pub mod gltf;
 pub mod lens;

@@ -66,6 +66,9 @@ mod tests {
     fn the_schema_shows_every_section_field_and_option() {
         SECTIONS.iter().for_each(|name| assert!(shown(name, true), "the schema lacks the section {name}"));
         fields::<Geometry>();
+        fields::<Change>();
+        fields::<Replacement>();
+        options::<About>();
         fields::<Element>();
         fields::<Optical>();
         fields::<Exact>();

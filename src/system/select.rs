@@ -10,6 +10,7 @@
 use crate::geometry::mesh::Mesh;
 use crate::system::gltf::Node;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// A choice of triangles.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,11 +98,14 @@ fn union(mut all: Vec<Picked>) -> Vec<Picked> {
 
 /// Whether a pattern means this node: its name, its path, or the name or path of a node above it.
 pub fn named(pattern: &str, node: &Node) -> bool {
-    let path = node.path.as_str();
-    let ends = path.match_indices('/').map(|(at, _)| at).chain([path.len()]);
-    matches(pattern, &node.name)
-        || path.split('/').any(|name| matches(pattern, name))
-        || ends.into_iter().any(|end| matches(pattern, &path[..end]))
+    matches(pattern, &node.name) || owner(pattern, &node.path).is_some()
+}
+
+/// Where in a path the first node ends that a pattern means by its name or path.
+pub fn owner(pattern: &str, path: &str) -> Option<usize> {
+    let mut ends = path.match_indices('/').map(|(at, _)| at).chain([path.len()]);
+    let name = |path: &str| path.rfind('/').map_or(0, |at| at + 1);
+    ends.find(|&end| matches(pattern, &path[..end]) || matches(pattern, &path[name(&path[..end])..end]))
 }
 
 fn carries(node: &Node, key: &str, pattern: &str) -> bool {
@@ -150,7 +154,9 @@ struct Face<'a> {
 
 fn faces(nodes: &[Node], of: &str, predicate: &Predicate, smooth: f64) -> Vec<Picked> {
     let matching = nodes.iter().enumerate().filter(|(_, node)| named(of, node));
-    let all = matching.flat_map(|(i, node)| split(i, &node.mesh, smooth)).collect();
+    // What is written of a face is written of where the file has it.
+    let meshes: Vec<(usize, Cow<Mesh>)> = matching.map(|(i, node)| (i, node.at_rest())).collect();
+    let all = meshes.iter().flat_map(|(i, mesh)| split(*i, mesh, smooth)).collect();
     let chosen = choose(predicate, all);
     union(chosen.into_iter().map(|face| Picked { node: face.node, triangles: face.triangles }).collect())
 }

@@ -60,6 +60,35 @@ const IRRADIANCE: &[Unit] = &[
 const TEMPERATURE: &[Unit] = &[("K", 1.0, 0)];
 const PRESSURE: &[Unit] = &[("Pa", 1.0, 0), ("hPa", 1.0, 2), ("kPa", 1.0, 3), ("mbar", 1.0, 2), ("bar", 1.0, 5)];
 
+/// Powers of m, rad, W, K and Pa in a unit.
+pub type Powers = [i8; 5];
+
+/// All units by what they measure; [`Coefficient`] adds the powers of lengths.
+const ALL: [(&[Unit], Powers); 8] = [
+    (LENGTH, [1, 0, 0, 0, 0]),
+    (WAVELENGTH_SQUARED, [2, 0, 0, 0, 0]),
+    (ABSORPTION, [-1, 0, 0, 0, 0]),
+    (ANGLE, [0, 1, 0, 0, 0]),
+    (FLUX, [0, 0, 1, 0, 0]),
+    (IRRADIANCE, [-2, 0, 1, 0, 0]),
+    (TEMPERATURE, [0, 0, 0, 1, 0]),
+    (PRESSURE, [0, 0, 0, 0, 1]),
+];
+
+/// A number with any unit in SI, and what it measures; `None` if there is no such unit, an error if it is too large.
+pub fn measured(number: &str, unit: &str) -> Option<Result<(f64, Powers), String>> {
+    if let Some((unit, powers)) = ALL.iter().find_map(|(units, powers)| Some((find(unit, units).ok()?, *powers))) {
+        return Some(convert(number, unit).map(|value| (value, powers)));
+    }
+    let power = Coefficient::from_text(&format!("{number} {unit}")).ok()?;
+    Some(Ok((power.value, [power.exponent as i8, 0, 0, 0, 0])))
+}
+
+/// True if this is the spelling of a unit.
+pub fn is_unit(spelling: &str) -> bool {
+    ALL.iter().any(|(units, _)| find(spelling, units).is_ok())
+}
+
 /// What can be read from the text of one RON string.
 pub trait FromText: Sized {
     /// What to write, with an example: `a length with its unit, such as "12.7 mm"`.
@@ -255,7 +284,7 @@ fn convert(number: &str, (_, factor, exponent): Unit) -> Result<f64, String> {
 }
 
 /// The longest decimal number at the start of the text (`-1.5e-3`), and what follows it.
-fn split_number(text: &str) -> Option<(&str, &str)> {
+pub(super) fn split_number(text: &str) -> Option<(&str, &str)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let sign = |at: usize| usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));

@@ -136,6 +136,8 @@ pub struct Results {
     pub trusted: bool,
     /// SHA-256 of every file that was read, by name as written.
     pub inputs: BTreeMap<String, String>,
+    /// Values of the system's parameters by name (`120 mm`), as the file or the command line gives them.
+    pub parameters: BTreeMap<String, String>,
     /// Cells along each side of the grid on which a path's peak is given.
     pub path_grid: usize,
     #[serde(skip)]

@@ -17,7 +17,8 @@ const RESOLVED: u64 = 30;
 /// Lost flux above this fraction of the emitted makes a run not to be trusted.
 const MOST_LOST: f64 = 1e-6;
 
-/// Results of variant `lane`; `inputs` are the files read with their hashes, `warnings` what the compiler said.
+/// Results of variant `lane`; `inputs` are the files read with their hashes, `warnings` what the compiler said. Parameters of
+/// the system are left to who knows them.
 pub fn results<const V: usize>(
     scene: &Scene,
     settings: &Settings,
@@ -58,6 +59,7 @@ pub fn results<const V: usize>(
         warnings,
         trusted,
         inputs,
+        parameters: BTreeMap::new(),
         path_grid: PATH_GRID,
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
         maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),

@@ -133,7 +133,7 @@ fn str_04(trial: &mut Trial) {
         // Irradiance of the beam across itself: 1 W over the disc of the source.
         let gain = (0.6 * diameter).powi(2) / (radius * radius);
         let seen = scaled(results.detectors["focus"].classes["scatter 1"], gain);
-        trial.check(&format!("{angle} deg"), seen, wanted, 0.02 * wanted);
+        trial.check(format!("{angle} deg"), seen, wanted, 0.02 * wanted);
     }
 }
 

@@ -95,7 +95,7 @@ impl Topology {
 }
 
 /// m2 and m3; measured from the middle of the mesh, so that a part far from the origin loses no digits.
-fn area_and_volume(mesh: &Mesh) -> (f64, f64) {
+pub(super) fn area_and_volume(mesh: &Mesh) -> (f64, f64) {
     let middle = mesh.bounds().map_or(DVec3::ZERO, |[low, high]| 0.5 * (low + high));
     let (mut area, mut volume) = (0.0, 0.0);
     for i in 0..mesh.triangles.len() {

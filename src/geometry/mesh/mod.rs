@@ -8,7 +8,7 @@ mod edges;
 mod face;
 mod weld;
 
-use glam::DVec3;
+use glam::{DAffine3, DMat3, DVec3};
 
 pub use edges::Topology;
 pub use face::Faces;
@@ -48,6 +48,21 @@ impl Mesh {
     /// Area of triangle `i`, m2.
     pub fn area(&self, i: usize) -> f64 {
         0.5 * self.cross(i).length()
+    }
+
+    /// Moves every vertex; a mirror image keeps its front outside.
+    pub fn transform(&mut self, map: &DAffine3) {
+        let matrix = map.matrix3;
+        if matrix == DMat3::IDENTITY {
+            return self.vertices.iter_mut().for_each(|vertex| *vertex += map.translation);
+        }
+        self.vertices.iter_mut().for_each(|vertex| *vertex = map.transform_point3(*vertex));
+        if matrix.determinant() < 0.0 {
+            self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        // The most a length grows, to within sqrt 3.
+        self.tolerance *= matrix.x_axis.length().max(matrix.y_axis.length()).max(matrix.z_axis.length());
+        (self.topology.area, self.topology.volume) = edges::area_and_volume(self);
     }
 
     /// Smallest and largest coordinates, m; `None` for a mesh without vertices.

@@ -90,6 +90,7 @@ fn file(map: &MapResult, system: &str) -> Vec<u8> {
         terminated_w: Default::default(),
         warnings: Vec::new(),
         trusted: true,
+        parameters: Default::default(),
         inputs: Default::default(),
         path_grid: 16,
         paths: Vec::new(),

@@ -18,6 +18,12 @@ pub fn reproduce(results: &Results, run: &RunInfo) -> Markup {
                 dt { "Run" } dd { (run.threads) " threads on " (run.host) ", " (format!("{:.1}", run.seconds)) " s, "
                     (grouped(run.rays_per_s.max(0.0) as u64, gap)) " source rays/s, " (grouped(run.segments_per_s.max(0.0) as u64, gap)) " segments/s" }
             }
+            @if !results.parameters.is_empty() {
+                table.inputs {
+                    thead { tr { th { "Parameter" } th { "Value" } } }
+                    tbody { @for (name, value) in &results.parameters { tr { td { (name) } td { (value) } } } }
+                }
+            }
             @if !results.inputs.is_empty() {
                 table.inputs {
                     thead { tr { th { "Input" } th { "SHA-256" } } }

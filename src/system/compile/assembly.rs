@@ -1,14 +1,16 @@
 //! The geometry of all files, placed, named and numbered.
 
-use super::Shop;
+use super::configure::{self, Landmark};
 use super::exact::NodeFaces;
+use super::{Shop, alias};
 use crate::error::Problem;
-use crate::geometry::Body;
+use crate::geometry::{Body, rotation};
 use crate::system::document as written;
 use crate::system::elements;
-use crate::system::gltf::{self, Node};
+use crate::system::gltf::{self, GltfFile, Node};
 use crate::system::select;
 use glam::{DAffine3, DMat3, DVec3};
+use std::path::Path;
 
 /// Every node with triangles. Triangles are numbered through, node after node.
 #[derive(Debug, Default)]
@@ -17,6 +19,8 @@ pub struct Assembly {
     pub nodes: Vec<Node>,
     /// Which entry of `geometry` each node is from; `None` for elements.
     pub file_of: Vec<Option<usize>>,
+    /// Frames of all nodes of the files and elements, world, m.
+    pub landmarks: Vec<Landmark>,
     /// First triangle of each node.
     pub first: Vec<u32>,
     /// Centre of everything, world, m: the origin of scene coordinates.
@@ -33,66 +37,86 @@ pub struct Assembly {
     pub exact: Vec<NodeFaces>,
 }
 
-/// Reads and places every geometry file.
+/// Reads and places every geometry file, and does what the system says about its nodes.
 pub fn read(shop: &mut Shop) -> Assembly {
     let mut assembly = Assembly::default();
     for (i, placed) in shop.document.system.geometry.iter().enumerate() {
-        let path = shop.document.resolve(&placed.file);
-        let file = match gltf::read(&path) {
-            Ok(file) => file,
-            Err(problems) => {
-                shop.problems.extend(problems);
-                continue;
-            }
-        };
-        shop.problems.extend(file.warnings);
-        for read in &file.files {
-            let name = read.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-            match std::fs::read(read) {
-                Ok(bytes) => shop.input(&name, &bytes),
-                Err(error) => shop.fault(&format!("geometry[{i}].file"), Problem::error(format!("{name}: {error}"))),
-            }
-        }
+        let Some(file) = shop.gltf(&placed.file, &format!("geometry[{i}].file")) else { continue };
         let solid = file.nodes.into_iter().filter(|node| !node.mesh.triangles.is_empty());
         assembly.nodes.extend(solid.map(|node| place(node, placed)));
         assembly.file_of.resize(assembly.nodes.len(), Some(i));
+        let mark = |(path, map)| Landmark { file: Some(i), path, frame: frame(&map, placed) };
+        assembly.landmarks.extend(file.frames.into_iter().map(mark));
     }
     for (name, element) in shop.document.system.elements.iter() {
         match elements::nodes(name, element) {
             Ok(nodes) => assembly.nodes.extend(nodes),
             Err(problem) => shop.fault(&format!("elements[{name:?}]"), problem),
         }
+        let own = &assembly.nodes[assembly.file_of.len()..];
+        let family = own.first().filter(|node| node.path != name).map(|node| (name.to_owned(), node.frame));
+        let frames = own.iter().map(|node| (node.path.clone(), node.frame)).chain(family);
+        assembly.landmarks.extend(frames.map(|(path, frame)| Landmark { file: None, path, frame }));
         assembly.file_of.resize(assembly.nodes.len(), None);
     }
+    alias::rename(shop, &mut assembly);
     make_unique(&mut assembly.nodes);
+    configure::configure(shop, &mut assembly);
     assembly.number();
     assembly
 }
 
-/// Scaled by the unit, turned by `up`, then by `rotate`, then moved.
-pub(super) fn place(mut node: Node, placed: &written::Geometry) -> Node {
+impl Shop<'_> {
+    /// The content of a glTF file that is named at a path of the document; what is wrong with it is noted.
+    pub fn gltf(&mut self, file: &Path, path: &str) -> Option<GltfFile> {
+        let file = match gltf::read(&self.document.resolve(file)) {
+            Ok(file) => file,
+            Err(problems) => {
+                self.problems.extend(problems);
+                return None;
+            }
+        };
+        self.problems.extend_from_slice(&file.warnings);
+        for read in &file.files {
+            let name = read.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+            match std::fs::read(read) {
+                Ok(bytes) => self.input(&name, &bytes),
+                Err(error) => self.fault(path, Problem::error(format!("{name}: {error}"))),
+            }
+        }
+        Some(file)
+    }
+}
+
+/// Turned by `up`, then by `rotate`.
+fn turn(placed: &written::Geometry) -> DMat3 {
     let up = match placed.up {
         written::Up::Y => DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y),
         written::Up::Stored | written::Up::Z => DMat3::IDENTITY,
     };
-    let angles = placed.rotate.0;
     // Identity factors are skipped: a rotation by zero must not cost a digit.
-    let turn = if angles == DVec3::ZERO {
-        up
-    } else {
-        DMat3::from_rotation_z(angles.z) * DMat3::from_rotation_y(angles.y) * DMat3::from_rotation_x(angles.x) * up
-    };
-    for vertex in &mut node.mesh.vertices {
-        *vertex = turn * (placed.unit.0 * *vertex) + placed.at.0;
-    }
+    if placed.rotate.0 == DVec3::ZERO { up } else { rotation(placed.rotate.0) * up }
+}
+
+/// Scaled by the unit, turned, then moved.
+pub(super) fn place(mut node: Node, placed: &written::Geometry) -> Node {
+    let turn = turn(placed);
     let unit = placed.unit.0;
-    // The unit scales what is written in the node's coordinates as well, so it is no part of the frame.
-    let origin = turn * (unit * node.frame.translation) + placed.at.0;
-    node.frame = DAffine3::from_mat3_translation(turn * node.frame.matrix3, origin);
+    for vertex in &mut node.mesh.vertices {
+        *vertex = turn * (unit * *vertex) + placed.at.0;
+    }
+    node.frame = frame(&node.frame, placed);
     node.mesh.tolerance *= unit;
     node.mesh.topology.area *= unit * unit;
     node.mesh.topology.volume *= unit * unit * unit;
     node
+}
+
+/// The frame of a node of a file, placed. The unit scales what is written in the node's coordinates as well, so it is no part of it.
+fn frame(frame: &DAffine3, placed: &written::Geometry) -> DAffine3 {
+    let turn = turn(placed);
+    let origin = turn * (placed.unit.0 * frame.translation) + placed.at.0;
+    DAffine3::from_mat3_translation(turn * frame.matrix3, origin)
 }
 
 /// Names that occur twice become their paths, and those get numbers if they still do.
@@ -124,6 +148,8 @@ impl Assembly {
             node.mesh.vertices.iter_mut().for_each(|vertex| *vertex -= shift);
             node.exact.iter_mut().for_each(|declared| declared.at -= shift);
             node.frame.translation -= shift;
+            let [there, back] = [shift, -shift].map(DAffine3::from_translation);
+            node.moved = if node.moved == DAffine3::IDENTITY { node.moved } else { back * node.moved * there };
             self.first.push(next);
             next += node.mesh.triangles.len() as u32;
         }

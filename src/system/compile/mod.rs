@@ -1,7 +1,10 @@
 //! The compiler: from the document and its geometry to a scene. All problems at once, not the first.
 
+pub mod against;
+mod alias;
 mod assembly;
 mod assign;
+mod configure;
 mod exact;
 mod lights;
 mod media;
@@ -31,6 +34,8 @@ pub struct Compiled {
     pub warnings: Vec<Problem>,
     /// SHA-256 of every file that was read, by name as written.
     pub inputs: BTreeMap<String, String>,
+    /// Values of the system's parameters by name: `120 mm`.
+    pub parameters: BTreeMap<String, String>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -54,12 +59,16 @@ impl Shop<'_> {
 
     /// A glob that selects nothing.
     pub fn nothing_matches(&mut self, path: &str, glob: &str, names: &[String]) {
-        let problem = Problem::error(format!("no node matches `{glob}`"));
-        let problem = match did_you_mean(glob, names.iter().map(String::as_str)) {
-            Some(name) => problem.hinting(format!("did you mean `{name}`?")),
-            None => problem.expecting(format!("one of {}", listed(names))),
-        };
-        self.fault(path, problem);
+        self.fault(path, no_node(glob, names));
+    }
+}
+
+/// A glob that none of these nodes matches.
+fn no_node(glob: &str, names: &[String]) -> Problem {
+    let problem = Problem::error(format!("no node matches `{glob}`"));
+    match did_you_mean(glob, names.iter().map(String::as_str)) {
+        Some(name) => problem.hinting(format!("did you mean `{name}`?")),
+        None => problem.expecting(format!("one of {}", listed(names))),
     }
 }
 
@@ -109,6 +118,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let mut shop = Shop { document, problems: document.warnings.clone(), inputs: BTreeMap::new() };
     let system_file = document.path.file_name().map_or("system".into(), |name| name.to_string_lossy().into_owned());
     shop.inputs.insert(system_file, document.sha256.clone());
+    shop.inputs.extend(document.included().map(|(name, sha256)| (name, sha256.to_owned())));
     let mut assembly = assembly::read(&mut shop);
     let media = media::media(&mut shop);
     exact::declare(&mut shop, &mut assembly);
@@ -149,7 +159,8 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     if problems.iter().any(|problem| problem.severity == Severity::Error) {
         return Err(Error::Input(problems));
     }
-    Ok((Compiled { scene, settings, warnings: problems, inputs }, assembly))
+    let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
+    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters }, assembly))
 }
 
 fn stem(document: &Document) -> String {

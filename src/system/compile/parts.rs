@@ -5,7 +5,7 @@ use super::{Document, Error, Problem, Shop};
 use crate::system::document::{Geometry, Up};
 use crate::system::gltf::{self, Node};
 use crate::system::units::{Angles, LengthUnit, Position};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -22,6 +22,11 @@ pub fn parts_of_system(document: &Document) -> Result<(Vec<Node>, Vec<Problem>),
     for node in &mut nodes {
         node.mesh.vertices.iter_mut().for_each(|vertex| *vertex += assembly.shift);
         node.frame.translation += assembly.shift;
+        let rest = DAffine3::from_translation(assembly.shift)
+            * node.moved.inverse()
+            * DAffine3::from_translation(-assembly.shift);
+        node.mesh.transform(&rest);
+        node.frame = rest * node.frame;
     }
     Ok((nodes, problems))
 }

@@ -38,7 +38,8 @@ pub enum Up {
     Z,
 }
 
-fn metre() -> LengthUnit {
+/// What glTF says.
+pub(super) fn metre() -> LengthUnit {
     LengthUnit(1.0)
 }
 

@@ -6,13 +6,17 @@
 
 mod check;
 mod coating;
+mod configure;
 mod detector;
 mod element;
 mod entry;
 mod exact;
 mod geometry;
+mod include;
+mod manuscript;
 mod medium;
 mod names;
+mod parameter;
 mod read;
 mod run;
 mod scatter;
@@ -21,12 +25,14 @@ mod surface;
 mod tree;
 
 pub use coating::{Coating, Specular};
+pub use configure::{About, Change, Replacement};
 pub use detector::{Bins, Detector, Quantity, Receiver};
 pub use element::{Body, Element, Optical};
 pub use exact::{Exact, Form, Relative};
 pub use geometry::{Geometry, Up};
 pub use medium::Medium;
 pub use names::Names;
+pub use parameter::Choice;
 pub use read::SECTIONS;
 pub use run::{Roulette, Run, Until};
 pub use scatter::{Scatter, ScatterSide};
@@ -34,6 +40,7 @@ pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 
 use crate::error::{Error, Problem, Span};
+use manuscript::Manuscript;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -48,10 +55,16 @@ const LARGEST: u64 = 64 << 20;
 pub struct System {
     /// What reports call it.
     pub name: Option<String>,
+    /// Files whose sections are laid under these.
+    pub include: Vec<PathBuf>,
     /// Files with the shapes.
     pub geometry: Vec<Geometry>,
     /// Shapes written here, by name.
     pub elements: Names<Element>,
+    /// Names of nodes and materials in the files, and what the system calls them.
+    pub aliases: Names<String>,
+    /// What is done to nodes once they are placed, in order.
+    pub configure: Vec<Change>,
     /// The medium around everything: a name in `media`, or "vacuum".
     pub ambient: String,
     /// Media by name. "vacuum" is always there.
@@ -77,14 +90,15 @@ pub struct System {
 pub struct Document {
     /// The file.
     pub path: PathBuf,
-    /// Its text, without byte-order mark.
-    pub text: String,
     /// SHA-256 of its bytes, in lower-case hexadecimal.
     pub sha256: String,
     /// The system.
     pub system: System,
+    /// Values of the parameters, in the order of the text: `120 mm`.
+    pub parameters: Names<String>,
     /// What the author should look at, though it can be used.
     pub warnings: Vec<Problem>,
+    script: Manuscript,
     tree: Node,
     indices: Indices,
 }
@@ -93,14 +107,23 @@ pub struct Document {
 #[derive(Debug, Clone, Default)]
 struct Indices {
     geometry: Vec<usize>,
+    configure: Vec<usize>,
     surfaces: Vec<usize>,
 }
 
+/// Reads a file that the user names.
+type Opener = dyn Fn(&Path) -> Result<Vec<u8>, Error>;
+
 impl Document {
-    /// Reads a system file. Fails with all problems of the file at once, or if a file that it names is not there.
+    /// Reads a system file and what it includes. Fails with all problems at once, or if a file that it names is not there.
     pub fn read(path: &Path) -> Result<Document, Error> {
+        Document::choose(path, &Choice::default())
+    }
+
+    /// The same with parameters chosen from outside; fails also if the choice names what the system has not.
+    pub fn choose(path: &Path, choice: &Choice) -> Result<Document, Error> {
         let bytes = load(path)?;
-        let (document, mut problems) = Document::examine(path, &bytes)?;
+        let (document, mut problems) = Document::examine(path, &bytes, choice, Some(&load))?;
         let missing = document.missing_files();
         let sound = !problems.iter().any(Problem::is_error);
         if sound && !missing.is_empty() {
@@ -111,9 +134,9 @@ impl Document {
         document.accepted(problems)
     }
 
-    /// Reads a system from the bytes of a file. Opens no file.
+    /// Reads a system from the bytes of a file. Opens no file: what it includes is left out.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Document, Error> {
-        let (document, problems) = Document::examine(path, bytes)?;
+        let (document, problems) = Document::examine(path, bytes, &Choice::default(), None)?;
         document.accepted(problems)
     }
 
@@ -127,19 +150,30 @@ impl Document {
     }
 
     /// The document as far as it can be read, and its problems.
-    fn examine(path: &Path, bytes: &[u8]) -> Result<(Document, Vec<Problem>), Error> {
-        let refuse = |problem: Problem| Error::Input(vec![problem.in_file(path)]);
-        let text = std::str::from_utf8(bytes).map_err(|e| refuse(not_utf8(bytes, e.valid_up_to())))?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text).to_owned();
-        let tree = tree::read(&text).map_err(|fault| refuse(syntax(&text, &fault)))?;
-        let mut reader = read::Reader::new(&text);
+    fn examine(
+        path: &Path,
+        bytes: &[u8],
+        choice: &Choice,
+        open: Option<&Opener>,
+    ) -> Result<(Document, Vec<Problem>), Error> {
+        let mut gatherer = include::Gatherer::new(open);
+        let name = path.file_name().map_or("system".into(), PathBuf::from);
+        let tree = gatherer.file(path, &name, bytes)?;
+        let include::Gatherer { mut script, problems: mut found, .. } = gatherer;
+        let parameter::Outcome { values: parameters, problems, unused } =
+            parameter::substitute(&mut script, &tree, choice)?;
+        found.extend(problems);
+        let mut reader = read::Reader::new(&script);
         let (system, indices) = reader.system(&tree);
-        let read::Reader { problems: mut found, mended, .. } = reader;
-        let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-        let warnings = Vec::new();
-        let document = Document { path: path.to_path_buf(), text, sha256, system, warnings, tree, indices };
+        let read::Reader { problems, mended, .. } = reader;
+        found.extend(problems);
+        let (path, sha256) = (path.to_path_buf(), digest(bytes));
+        let document = Document { path, sha256, system, parameters, warnings: Vec::new(), script, tree, indices };
         let checked = document.checked(found.is_empty());
         found.extend(checked.into_iter().filter(|problem| !read::is_mended(&mended, problem)));
+        if !found.iter().any(Problem::is_error) {
+            found.extend(unused);
+        }
         let problems = document.located(found);
         Ok((document, problems))
     }
@@ -149,30 +183,44 @@ impl Document {
         self.located(self.checked(true))
     }
 
-    /// Problems of this file in the order of its text.
+    /// Problems in the order of the text, file by file.
     fn located(&self, mut problems: Vec<Problem>) -> Vec<Problem> {
-        problems.sort_by_key(|problem| problem.span);
-        problems.into_iter().map(|problem| problem.in_file(&self.path)).collect()
+        problems.sort_by_key(|problem| (self.script.order(problem.file.as_deref()), problem.span));
+        let here = |problem: Problem| if problem.file.is_some() { problem } else { problem.in_file(&self.path) };
+        problems.into_iter().map(here).collect()
     }
 
-    /// Where a path such as `surfaces[3].scatter` or `sources["sun"].extent.radius` stands in the text: the name of a
-    /// named entry, the value of anything else. If the path leads nowhere, the nearest thing on the way.
+    /// Files that the system includes, as seen from its folder, each with its SHA-256.
+    pub fn included(&self) -> impl Iterator<Item = (String, &str)> {
+        self.script.pages.iter().skip(1).map(|page| (page.name.display().to_string(), page.sha256.as_str()))
+    }
+
+    /// Where a path such as `surfaces[3].scatter` or `sources["sun"].extent.radius` stands in the text of its file: the name
+    /// of a named entry, the value of anything else. If the path leads nowhere, the nearest thing on the way.
     pub fn span(&self, path: &str) -> Option<Span> {
+        self.find(path).map(|found| self.script.span(found.start..found.end))
+    }
+
+    /// A problem at a path of this document: file, place and path are filled in.
+    pub fn problem(&self, path: &str, problem: Problem) -> Problem {
+        let problem = problem.on(path);
+        match self.find(path) {
+            Some(found) => self.script.locate(problem, found.start..found.end),
+            None => problem.in_file(&self.path),
+        }
+    }
+
+    /// The value or name at a path, or the nearest on the way.
+    fn find(&self, path: &str) -> Option<&Node> {
         let steps = read::steps(path)?;
-        let found = (1..=steps.len()).rev().find_map(|n| {
+        (1..=steps.len()).rev().find_map(|n| {
             let (last, way) = steps[..n].split_last()?;
             let node = self.tree.find(way)?;
             match last {
                 tree::Step::Name(name) if node.key(name).is_some() => node.key(name),
                 _ => self.tree.find(&steps[..n]),
             }
-        })?;
-        Some(tree::place(&self.text, found.start, found.end))
-    }
-
-    /// A problem at a path of this document: file, place and path are filled in.
-    pub fn problem(&self, path: &str, problem: Problem) -> Problem {
-        problem.in_file(&self.path).at(self.span(path)).on(path)
+        })
     }
 
     /// The path of a file that the document names, which is relative to the document's own directory.
@@ -195,6 +243,10 @@ impl Document {
         let mut files: Vec<(String, &Path)> = Vec::new();
         for (at, geometry) in self.indices.geometry.iter().zip(&self.system.geometry) {
             files.push((format!("geometry[{at}].file"), &geometry.file));
+        }
+        for (at, change) in self.indices.configure.iter().zip(&self.system.configure) {
+            let with = change.replace.iter();
+            files.extend(with.map(|with| (format!("configure[{at}].replace.file"), with.file.as_path())));
         }
         for (name, medium) in self.system.media.iter() {
             files.extend(medium.file().map(|file| (format!("media[{name:?}].file"), file)));
@@ -240,6 +292,11 @@ fn load(path: &Path) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
+/// SHA-256 in lower-case hexadecimal.
+fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 fn not_utf8(bytes: &[u8], valid: usize) -> Problem {
     let before = String::from_utf8_lossy(&bytes[..valid]);
     Problem::error("this is not UTF-8 text")
@@ -247,12 +304,15 @@ fn not_utf8(bytes: &[u8], valid: usize) -> Problem {
         .expecting("a system written in RON")
 }
 
-fn syntax(text: &str, fault: &tree::Fault) -> Problem {
+/// A fault of syntax in the file that was appended last.
+fn syntax(script: &Manuscript, fault: &tree::Fault) -> Problem {
+    // A fault at the very end of a file is in that file.
+    let at = fault.at.max(script.pages.last().map_or(0, |page| page.start));
     let bracket = fault.open.map(|open| {
-        let Span { line, column, .. } = tree::place(text, open, open + 1);
-        format!("inside the `{}` of line {line}, column {column}", &text[open..=open])
+        let Span { line, column, .. } = script.span(open..open + 1);
+        format!("inside the `{}` of line {line}, column {column}", script.written(open..open + 1))
     });
-    let problem = Problem::error(fault.message.clone()).at(tree::place(text, fault.at, fault.at + 1)).hinting(bracket);
+    let problem = script.locate(Problem::error(fault.message.clone()), at..at + 1).hinting(bracket);
     match fault.expected {
         Some(expected) => problem.expecting(expected),
         None => problem,

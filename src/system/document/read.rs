@@ -1,18 +1,25 @@
 //! The sections of a document, entry by entry.
 
 use super::entry::{self, Fault};
+use super::manuscript::Manuscript;
 use super::names::Names;
 use super::tree::{self, Node, Shape, Step};
 use super::{Indices, System};
-use crate::error::{Problem, did_you_mean};
-use serde::de::DeserializeOwned;
-use std::collections::BTreeSet;
+use crate::error::{Problem, Span, did_you_mean};
+use serde::de::{DeserializeOwned, IgnoredAny};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// What a system is made of, as one reads it.
 pub const SECTIONS: &[&str] = &[
     "name",
+    "include",
+    "parameters",
+    "configurations",
     "geometry",
     "elements",
+    "aliases",
+    "configure",
     "ambient",
     "media",
     "coatings",
@@ -29,9 +36,9 @@ const MOST: usize = 500;
 
 /// Reads entries and collects what is wrong with them.
 pub struct Reader<'a> {
-    /// The text of the document.
-    pub text: &'a str,
-    /// What is wrong so far; places, but no file.
+    /// The texts of the document.
+    pub script: &'a Manuscript,
+    /// What is wrong so far, with file and place.
     pub problems: Vec<Problem>,
     /// Paths of values that were replaced by stand-ins.
     pub mended: Vec<String>,
@@ -39,19 +46,26 @@ pub struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// A reader that has found nothing yet.
-    pub fn new(text: &'a str) -> Reader<'a> {
-        Reader { text, problems: Vec::new(), mended: Vec::new() }
+    pub fn new(script: &'a Manuscript) -> Reader<'a> {
+        Reader { script, problems: Vec::new(), mended: Vec::new() }
     }
 
     /// The system, as far as it can be read.
     pub fn system(&mut self, root: &Node) -> (System, Indices) {
         self.sections(root);
+        // Expressions are worked out before this; names are read here.
+        let _: Names<IgnoredAny> = self.map(root, "parameters");
+        let _: Names<BTreeMap<String, IgnoredAny>> = self.map(root, "configurations");
         let (geometry, geometry_at) = self.list(root, "geometry");
+        let (configure, configure_at) = self.list(root, "configure");
         let (surfaces, surfaces_at) = self.list(root, "surfaces");
         let system = System {
             name: self.single(root, "name"),
+            include: self.list(root, "include").0,
             geometry,
             elements: self.map(root, "elements"),
+            aliases: self.map(root, "aliases"),
+            configure,
             ambient: self.single(root, "ambient").unwrap_or_else(|| "vacuum".to_owned()),
             media: self.map(root, "media"),
             coatings: self.map(root, "coatings"),
@@ -62,7 +76,7 @@ impl<'a> Reader<'a> {
             detectors: self.map(root, "detectors"),
             run: self.single(root, "run").unwrap_or_default(),
         };
-        (system, Indices { geometry: geometry_at, surfaces: surfaces_at })
+        (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at })
     }
 
     /// Refuses what is not a system, and sections that are unknown or given twice.
@@ -120,7 +134,7 @@ impl<'a> Reader<'a> {
             }
         };
         let mut things: Vec<(String, T)> = Vec::new();
-        let mut seen = BTreeSet::new();
+        let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
         for (key, value) in entries {
             let Some(name) = key.text() else {
                 self.push(
@@ -131,13 +145,25 @@ impl<'a> Reader<'a> {
                 continue;
             };
             let path = format!("{section}[{name:?}]");
-            if !seen.insert(name) {
-                self.push(key.start..key.end, section, Problem::error(format!("the name {name:?} is given twice")));
-            } else if let Some(thing) = self.entry(value, &path) {
+            if let Some(&first) = seen.get(name) {
+                let problem = Problem::error(format!("the name {name:?} is given twice"));
+                self.push(key.start..key.end, section, problem.hinting(self.elsewhere(first, key.start)));
+                continue;
+            }
+            seen.insert(name, key.start);
+            if let Some(thing) = self.entry(value, &path) {
                 things.push((name.to_owned(), thing));
             }
         }
         things.into_iter().collect()
+    }
+
+    /// Where the first of two things is, if not in the file of the second.
+    fn elsewhere(&self, first: usize, second: usize) -> Option<String> {
+        let page = self.script.page(first);
+        let Span { line, column, .. } = self.script.span(first..first);
+        let apart = page.start != self.script.page(second).start;
+        apart.then(|| format!("the other is in {}:{line}:{column}", page.name.display()))
     }
 
     fn wrong_shape(&mut self, node: &Node, section: &str, expected: &str) {
@@ -147,7 +173,7 @@ impl<'a> Reader<'a> {
 
     /// One entry of the document.
     fn entry<T: DeserializeOwned>(&mut self, node: &Node, path: &str) -> Option<T> {
-        let entry = entry::read(&self.text[node.start..node.end]);
+        let entry = entry::read(&self.script.read(node.start..node.end));
         for fault in &entry.faults {
             self.fault(node, path, fault);
         }
@@ -162,16 +188,22 @@ impl<'a> Reader<'a> {
         {
             path = format!("{path}.{field}");
         }
-        let problem = fault.problem(&self.text[range.clone()]);
-        self.push(range, &path, problem);
+        // What is wrong with an expression has been told.
+        if !self.script.is_spoilt(range.start) {
+            let problem = fault.problem(&self.script.read(range.clone()));
+            let hint = self.script.reading(range.start).filter(|_| problem.hint.is_none());
+            let hint = hint.map(|read| format!("{} is {read} here", self.script.written(range.clone())));
+            let problem = if hint.is_some() { problem.hinting(hint) } else { problem };
+            self.push(range, &path, problem);
+        }
         self.mended.push(path);
     }
 
-    fn push(&mut self, range: std::ops::Range<usize>, path: &str, problem: Problem) {
+    fn push(&mut self, range: Range<usize>, path: &str, problem: Problem) {
         if self.problems.len() >= MOST {
             return;
         }
-        self.problems.push(problem.on(path).at(tree::place(self.text, range.start, range.end)));
+        self.problems.push(self.script.locate(problem.on(path), range));
     }
 }
 

@@ -7,12 +7,12 @@ mod lens;
 mod ring;
 
 use crate::error::Problem;
-use crate::geometry::Frame;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::{Frame, rotation};
 use crate::system::document::{Body, Element};
 use crate::system::exact::Declared;
 use crate::system::gltf::Node;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 
 /// A shape before it is placed: triangles with one label each, tags by label, and what labels truly are.
 #[derive(Debug, Default)]
@@ -60,13 +60,7 @@ pub fn nodes(name: &str, element: &Element) -> Result<Vec<Node>, Problem> {
 
 /// Turned about its origin, then moved.
 fn place(draft: Draft, name: String, family: &str, element: &Element) -> Node {
-    let angles = element.rotate.0;
-    // Identity factors are skipped: a rotation by zero must not cost a digit.
-    let turn = if angles == DVec3::ZERO {
-        DMat3::IDENTITY
-    } else {
-        DMat3::from_rotation_z(angles.z) * DMat3::from_rotation_y(angles.y) * DMat3::from_rotation_x(angles.x)
-    };
+    let turn = rotation(element.rotate.0);
     let at = element.at.0;
     let vertices: Vec<DVec3> = draft.vertices.iter().map(|v| at + turn * *v).collect();
     let reach = vertices.iter().fold(0f64, |most, v| most.max(v.abs().max_element()));
@@ -94,6 +88,7 @@ fn place(draft: Draft, name: String, family: &str, element: &Element) -> Node {
         exact,
         medium: draft.medium,
         is_element: true,
+        moved: DAffine3::IDENTITY,
     }
 }
 

@@ -25,6 +25,7 @@ use accessor::Store;
 use container::Container;
 use document::Root;
 use glam::{DAffine3, DVec3};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 pub use write::glb;
 
@@ -40,6 +41,8 @@ const MOST_PROBLEMS: usize = 20;
 pub struct GltfFile {
     /// Nodes that carry a mesh, in document order.
     pub nodes: Vec<Node>,
+    /// Path and map to the world (m) of every node of the scene, also of those without a mesh.
+    pub frames: Vec<(String, DAffine3)>,
     pub warnings: Vec<Problem>,
     /// Every file that was read: the glTF itself and its buffers.
     pub files: Vec<PathBuf>,
@@ -71,12 +74,24 @@ pub struct Node {
     pub medium: Option<String>,
     /// True if it was written in the system: its tags name its faces.
     pub is_element: bool,
+    /// How it was moved after it was placed, in the coordinates of the mesh: from where the file has it to where it is, m.
+    pub moved: DAffine3,
 }
 
 impl Node {
     /// Name of the material of triangle `i`, "" for none.
     pub fn tag(&self, i: usize) -> &str {
         &self.tags[self.mesh.labels[i] as usize]
+    }
+
+    /// The mesh where the file has it.
+    pub fn at_rest(&self) -> Cow<'_, Mesh> {
+        if self.moved == DAffine3::IDENTITY {
+            return Cow::Borrowed(&self.mesh);
+        }
+        let mut mesh = self.mesh.clone();
+        mesh.transform(&self.moved.inverse());
+        Cow::Owned(mesh)
     }
 
     /// Corners of triangle `i`, m, counter-clockwise seen from outside.
@@ -103,7 +118,7 @@ fn open(path: &Path) -> Result<GltfFile, Vec<Problem>> {
         return Err(problems);
     }
     warnings.extend(problems);
-    let placed = scene::flatten(&root, &mut warnings)?;
+    let scene::Flat { placed, frames } = scene::flatten(&root, &mut warnings)?;
     bearable(&root, &placed)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let bin = container.bin.clone().map(|range| &container.bytes[range]);
@@ -115,7 +130,7 @@ fn open(path: &Path) -> Result<GltfFile, Vec<Problem>> {
         warnings.push(Problem::warning("contains no triangle with an area"));
     }
     let files = std::iter::once(path.to_owned()).chain(store.files).collect();
-    Ok(GltfFile { nodes, warnings, files })
+    Ok(GltfFile { nodes, frames, warnings, files })
 }
 
 fn parts(store: &Store, placed: &[scene::Placed], warnings: &mut Vec<Problem>) -> Result<Vec<Node>, Vec<Problem>> {

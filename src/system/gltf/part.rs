@@ -6,7 +6,7 @@ use super::scene::{self, Placed};
 use super::{Node, transform};
 use crate::error::Problem;
 use crate::geometry::mesh::Mesh;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use gltf::json;
 use gltf::json::mesh::{TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 use std::collections::BTreeMap;
@@ -70,6 +70,7 @@ pub fn read(store: &Store, placed: &Placed, warnings: &mut Vec<Problem>) -> Resu
         exact: Vec::new(),
         medium: None,
         is_element: false,
+        moved: DAffine3::IDENTITY,
     })
 }
 

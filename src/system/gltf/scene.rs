@@ -20,17 +20,26 @@ pub struct Placed {
     pub world: DAffine3,
 }
 
-/// All nodes with meshes in the scene that is shown, in document order.
-pub fn flatten(root: &Root, warnings: &mut Vec<Problem>) -> Result<Vec<Placed>, Vec<Problem>> {
+/// A scene without its tree.
+#[derive(Debug, Default)]
+pub struct Flat {
+    /// Nodes with meshes, in document order.
+    pub placed: Vec<Placed>,
+    /// Path and map to the world of all nodes.
+    pub frames: Vec<(String, DAffine3)>,
+}
+
+/// The scene that is shown.
+pub fn flatten(root: &Root, warnings: &mut Vec<Problem>) -> Result<Flat, Vec<Problem>> {
     let parents = parents(root)?;
     let roots = roots(root, &parents, warnings)?;
-    let (placed, reached) = walk(root, &roots)?;
+    let (flat, reached) = walk(root, &roots)?;
     let lost = (0..root.nodes.len()).filter(|&i| !reached[i] && root.nodes[i].mesh.is_some());
     if let Some(first) = lost.clone().next() {
         let problem = format!("{} nodes with meshes are not in the scene and are left out", lost.count());
         warnings.push(Problem::warning(problem).on(format!("nodes[{first}]")));
     }
-    Ok(placed)
+    Ok(flat)
 }
 
 /// The parent of each node; refuses references to nowhere, second parents and cycles.
@@ -113,11 +122,11 @@ fn roots(root: &Root, parents: &[Option<usize>], warnings: &mut Vec<Problem>) ->
     if problems.is_empty() { Ok(roots) } else { Err(problems) }
 }
 
-/// Depth first, children in order; returns what carries a mesh, and which nodes were reached.
-fn walk(root: &Root, roots: &[usize]) -> Result<(Vec<Placed>, Vec<bool>), Vec<Problem>> {
+/// Depth first, children in order; also returns which nodes were reached.
+fn walk(root: &Root, roots: &[usize]) -> Result<(Flat, Vec<bool>), Vec<Problem>> {
     let mut names = Names::default();
     let mut reached = vec![false; root.nodes.len()];
-    let (mut placed, mut problems) = (Vec::new(), Vec::new());
+    let (mut flat, mut problems) = (Flat::default(), Vec::new());
     // (node, map of its parent, length of the path up to its parent)
     let mut stack: Vec<(usize, DAffine3, usize)> = roots.iter().rev().map(|&i| (i, DAffine3::IDENTITY, 0)).collect();
     let mut path = String::new();
@@ -134,11 +143,17 @@ fn walk(root: &Root, roots: &[usize]) -> Result<(Vec<Placed>, Vec<bool>), Vec<Pr
             path.push('/');
         }
         path.push_str(&label(root, i));
-        if let Some(mesh) = node.mesh {
-            match within(mesh as usize, root.meshes.len(), "mesh") {
-                Ok(mesh) => placed.push(Placed { node: i, mesh, path: names.unique(&path), world }),
-                Err(problem) => problems.push(super::on_node(problem, i, node.name.as_deref())),
+        match node.mesh.map(|mesh| within(mesh as usize, root.meshes.len(), "mesh")) {
+            None => {
+                names.bytes += path.len();
+                flat.frames.push((path.clone(), world));
             }
+            Some(Ok(mesh)) => {
+                let path = names.unique(&path);
+                flat.frames.push((path.clone(), world));
+                flat.placed.push(Placed { node: i, mesh, path, world });
+            }
+            Some(Err(problem)) => problems.push(super::on_node(problem, i, node.name.as_deref())),
         }
         if names.bytes > MOST_PATH_BYTES || path.len() > MOST_PATH_BYTES {
             return Err(vec![Problem::error("paths of all nodes add up to more than 64 MB").on("nodes")]);
@@ -146,7 +161,7 @@ fn walk(root: &Root, roots: &[usize]) -> Result<(Vec<Placed>, Vec<bool>), Vec<Pr
         let here = path.len();
         stack.extend(node.children.iter().rev().map(|&child| (child as usize, world, here)));
     }
-    if problems.is_empty() { Ok((placed, reached)) } else { Err(problems) }
+    if problems.is_empty() { Ok((flat, reached)) } else { Err(problems) }
 }
 
 /// What a node is called in its path: its name, or its mesh's, or its number.

@@ -6,6 +6,7 @@ mod walls;
 
 use super::Shop;
 use super::assembly::Assembly;
+use super::configure::is_rigid;
 use crate::error::Problem;
 use crate::geometry::Frame;
 use crate::geometry::exact::{Face, Shape};
@@ -92,6 +93,10 @@ fn declared(
     mut triangles: Vec<u32>,
     shift: DVec3,
 ) -> Result<Declared, Problem> {
+    if !is_rigid(&node.moved) {
+        let problem = Problem::error("it is scaled by `configure`, which would change this shape");
+        return Err(problem.expecting("a node that is only moved and turned"));
+    }
     let (at, frame) = placed(exact, node, shift);
     let corners = |node: &Node, t: u32| node.mesh.corners(t as usize).map(|v| frame.to_local(v - at));
     let reach = |triangles: &[u32], node: &Node| {
@@ -131,7 +136,12 @@ fn declared(
 fn placed(exact: &written::Exact, node: &Node, shift: DVec3) -> (DVec3, Frame) {
     let x = exact.x.map_or(DVec3::X, |x| x.0);
     match exact.relative {
-        written::Relative::World => (exact.vertex.0 - shift, Frame::from_z_x(exact.axis.0, x)),
+        // What is written of a face is written of where the file has it.
+        written::Relative::World => {
+            let at = node.moved.transform_point3(exact.vertex.0 - shift);
+            let turned = |v: DVec3| node.moved.transform_vector3(v);
+            (at, Frame::from_z_x(turned(exact.axis.0), turned(x)))
+        }
         written::Relative::Node => {
             let turned = |v: DVec3| node.frame.transform_vector3(v).normalize_or(v);
             (node.frame.transform_point3(exact.vertex.0), Frame::from_z_x(turned(exact.axis.0), turned(x)))

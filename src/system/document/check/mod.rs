@@ -4,10 +4,11 @@ mod light;
 mod optics;
 
 use super::tree::Shape;
-use super::{Body, Document, Run, read};
+use super::{About, Body, Document, Run, read};
 use crate::error::{Problem, did_you_mean};
 use crate::system::units::Wavelength;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Shares given as decimals add up to 1 within the rounding of their sum: half an ulp for each of at most 64 terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -60,6 +61,7 @@ impl Document {
         let mut checker = Checker { document: self, problems: Vec::new(), used: BTreeSet::new() };
         checker.geometry();
         checker.elements();
+        checker.configure();
         checker.media();
         checker.coatings();
         checker.scatter();
@@ -80,7 +82,7 @@ impl<'a> Checker<'a> {
         if self.problems.len() >= MOST {
             return;
         }
-        self.problems.push(problem.on(path).at(self.document.span(path)));
+        self.problems.push(self.document.problem(path, problem));
     }
 
     /// Takes a problem down if something that must hold does not.
@@ -95,7 +97,7 @@ impl<'a> Checker<'a> {
         if !holds {
             let written = read::steps(path)
                 .and_then(|steps| self.document.tree.find(&steps))
-                .map_or("", |node| &self.document.text[node.start..node.end]);
+                .map_or(String::new(), |node| self.document.script.read(node.start..node.end));
             self.push(path, Problem::error(format!("{written} is out of range")).expecting(expected));
         }
     }
@@ -219,12 +221,42 @@ impl<'a> Checker<'a> {
     fn geometry(&mut self) {
         let document = self.document;
         for (at, geometry) in document.indices.geometry.iter().zip(&document.system.geometry) {
-            let path = format!("geometry[{at}].file");
-            let extension = geometry.file.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
-            self.require(matches!(extension.as_str(), "glb" | "gltf"), &path, || {
-                Problem::error(format!("{:?} is not a glTF file", geometry.file.display().to_string()))
-                    .expecting("a file that ends in .glb or .gltf")
+            self.gltf(&geometry.file, &format!("geometry[{at}].file"));
+        }
+    }
+
+    fn gltf(&mut self, file: &Path, path: &str) {
+        let extension = file.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
+        self.require(matches!(extension.as_str(), "glb" | "gltf"), path, || {
+            Problem::error(format!("{:?} is not a glTF file", file.display().to_string()))
+                .expecting("a file that ends in .glb or .gltf")
+        });
+    }
+
+    fn configure(&mut self) {
+        let document = self.document;
+        for (at, change) in document.indices.configure.iter().zip(&document.system.configure) {
+            let path = format!("configure[{at}]");
+            self.not_empty(&change.node, &format!("{path}.node"), "the name of the node");
+            let moves = change.scale.is_some() || change.rotate.is_some() || change.shift.is_some();
+            let acts = moves || change.replace.is_some();
+            self.require(change.hide != acts, &path, || {
+                let what = if acts { "a hidden node is not changed" } else { "this changes nothing" };
+                Problem::error(what).expecting("`hide: true`, or `replace`, `scale`, `rotate`, `move`")
             });
+            self.require(moves || change.about == About::Own, &format!("{path}.about"), || {
+                Problem::error("nothing is given in this frame").expecting("`scale`, `rotate` or `move`")
+            });
+            if let Some((x, y, z)) = change.scale {
+                for (axis, factor) in [x, y, z].into_iter().enumerate() {
+                    let holds = factor != 0.0 && factor.is_finite();
+                    self.range(holds, &format!("{path}.scale[{axis}]"), "a factor that is not 0");
+                }
+            }
+            if let Some(replacement) = &change.replace {
+                self.gltf(&replacement.file, &format!("{path}.replace.file"));
+                self.not_empty(&replacement.node, &format!("{path}.replace.node"), "the name of the node");
+            }
         }
     }
 

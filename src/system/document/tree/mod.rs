@@ -7,7 +7,7 @@ mod scan;
 
 use crate::error::Span;
 
-pub use scan::{quoted, read};
+pub use scan::{quoted, read, read_from};
 
 /// A value and where it stands, in bytes.
 #[derive(Debug, Clone)]

@@ -7,7 +7,12 @@ const DEEPEST: u32 = 100;
 
 /// The value of the text, which holds nothing else.
 pub fn read(text: &str) -> Result<Node, Fault> {
-    let mut scanner = Scanner { text, at: 0, depth: 0 };
+    read_from(text, 0)
+}
+
+/// The value of the text from byte `start` on, which holds nothing else.
+pub fn read_from(text: &str, start: usize) -> Result<Node, Fault> {
+    let mut scanner = Scanner { text, at: start, depth: 0 };
     scanner.skip_attributes()?;
     let node = scanner.value()?;
     scanner.skip_space()?;
