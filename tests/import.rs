@@ -82,8 +82,9 @@ fn rays_through_the_system_end_where_those_of_the_file_do() {
             };
             let found = frame.point(hit.point + compiled.scene.shift);
             let off = (found.truncate() - wanted.truncate()).length();
-            // Fused silica at 248 nm, once by its page and once through air and back, differs by 2e-6.
-            let allowed = if file.ends_with("US05831776-1.zmx") { 1e-7 } else { 1e-9 };
+            // Catalogue glasses go through air at 22 C and back at 20 C, which costs 3e-7 of the focal length; fused silica at
+            // 248 nm is on the steep side of its page.
+            let allowed = if file.ends_with("US05831776-1.zmx") { 1e-7 } else { 2e-8 };
             assert!(off < allowed, "{}: pupil {pupil}: {off:e} m", file.display());
             landed += 1;
         }
