@@ -153,6 +153,21 @@ fn the_triplet_agrees_with_the_published_flux() {
 }
 
 #[test]
+fn the_fast_lens_agrees_with_the_published_flux() {
+    hold("fast_lens");
+}
+
+#[test]
+fn the_questar_passes_what_paraxial_optics_says() {
+    hold("questar");
+}
+
+#[test]
+fn the_double_gauss_keeps_its_stray_light() {
+    hold("double_gauss");
+}
+
+#[test]
 fn every_shipped_system_is_held_to_its_numbers() {
     let mut shipped = Vec::new();
     for entry in std::fs::read_dir(folder()).expect("systems/ can be listed") {
@@ -172,7 +187,11 @@ fn every_shipped_system_is_held_to_its_numbers() {
     let mut folders: Vec<&str> = shipped.iter().map(|(folder, _)| folder.as_str()).collect();
     folders.sort_unstable();
     folders.dedup();
-    assert_eq!(folders, ["baffled_tube", "integrating_sphere", "slab", "triplet"], "is there a test for each?");
+    assert_eq!(
+        folders,
+        ["baffled_tube", "double_gauss", "fast_lens", "integrating_sphere", "questar", "slab", "triplet"],
+        "is there a test for each?"
+    );
 }
 
 /// The example of the README is a function of this file, so that it compiles.

@@ -7,7 +7,6 @@ use std::path::PathBuf;
 use straylight::error::Error;
 use straylight::report;
 use straylight::system::compile::geometry;
-use straylight::system::gltf::glb;
 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
@@ -34,7 +33,7 @@ pub fn export(args: &ExportArgs) -> Result<Ending, Error> {
     }
     let placed = geometry(&args.chosen.read(&args.system)?)?;
     warn(&placed.warnings);
-    let bytes = glb(&placed.nodes, placed.shift);
+    let bytes = placed.glb();
     let failed = |source| Error::Io { path: args.file.clone(), source };
     report::create(&args.file, |out| out.write_all(&bytes)).map_err(failed)?;
     let triangles: usize = placed.nodes.iter().map(|node| node.mesh.triangles.len()).sum();

@@ -28,7 +28,11 @@ fn numbers(optics: &Optics) -> String {
     let focus = last + first.back_focal_length;
     row("back focus", mm(first.back_focal_length), format!("mm from the last vertex, z = {} mm", mm(focus)));
     let along = if towards < 0.0 { "; light ends along -z" } else { "" };
-    row("image", mm(first.image_distance), format!("mm from the last vertex, height {} mm{along}", mm(first.image_height)));
+    row(
+        "image",
+        mm(first.image_distance),
+        format!("mm from the last vertex, height {} mm{along}", mm(first.image_height)),
+    );
     row("f-number", digits(first.f_number, 6), format!("working {}", digits(first.working_f_number, 6)));
     let (enter, exit) = (&first.entrance_pupil, &first.exit_pupil);
     let at = |base: f64, position: f64| format!("mm across, z = {} mm", mm(base + position));
@@ -44,7 +48,10 @@ fn mirrors(optics: &Optics) -> usize {
 
 /// Paraxial heights at every surface.
 fn rays(optics: &Optics) -> String {
-    let mut table = Table::new(["surface", "vertex z mm", "radius mm", "semi-diameter mm", "marginal mm", "chief mm"], &[1, 2, 3, 4, 5]);
+    let mut table = Table::new(
+        ["surface", "vertex z mm", "radius mm", "semi-diameter mm", "marginal mm", "chief mm"],
+        &[1, 2, 3, 4, 5],
+    );
     let frames = optics.lens.frames();
     let first = &optics.first_order;
     for (i, surface) in optics.lens.surfaces.iter().enumerate().take(optics.lens.surfaces.len() - 1).skip(1) {

@@ -18,13 +18,13 @@
 //!
 //! The descent therefore looks 2 x greatest tolerance / |d . n0| beyond the nearest hit.
 
+use super::Ray;
 use super::bvh::Bvh;
 use super::crossing::{Crossing, Hit, Left, MOST_COINCIDENT};
 use super::exact::Touch;
 use super::leaf::Line;
 use super::shear::{Meeting, Shear};
 use super::wide::{Descent, PAD, Probe};
-use super::Ray;
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -361,7 +361,13 @@ mod tests {
 
     #[test]
     fn a_ray_that_starts_on_a_surface_it_did_not_leave_does_not_meet_it() {
-        let bvh = Bvh::build(&[Body { vertices: &corners(0.0), triangles: &SQUARE, tolerance: 0.0, faces: &[], replaced: &[] }]);
+        let bvh = Bvh::build(&[Body {
+            vertices: &corners(0.0),
+            triangles: &SQUARE,
+            tolerance: 0.0,
+            faces: &[],
+            replaced: &[],
+        }]);
         assert_eq!(bvh.nearest(&down(0.0), &Left::nothing()), None);
         assert_eq!(bvh.nearest(&Ray { origin: DVec3::NAN, direction: DVec3::NAN }, &Left::nothing()), None);
         assert_eq!(Bvh::build(&[]).nearest(&down(1.0), &Left::nothing()), None);

@@ -88,7 +88,8 @@ fn coefficient(power: u32, written: Coefficient) -> Result<f64, Problem> {
         return Err(Problem::error(format!("a term of power {power}")).expecting("a power from 1 to 40"));
     }
     if written.exponent != exponent && !(written.value == 0.0 || exponent == 0 && written.exponent == 0) {
-        let problem = Problem::error(format!("the coefficient of power {power} has a length to the power {}", written.exponent));
+        let problem =
+            Problem::error(format!("the coefficient of power {power} has a length to the power {}", written.exponent));
         return Err(problem.expecting(format!("a unit such as mm^{exponent}")));
     }
     Ok(written.value)

@@ -10,6 +10,7 @@ mod cases;
 mod coincidence;
 mod ghosts;
 mod interfaces;
+#[allow(dead_code, reason = "one bench, several test targets")]
 mod lab;
 mod ledger;
 mod media;

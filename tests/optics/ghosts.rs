@@ -31,14 +31,24 @@ fn singlet_ghost(id: &str) {
     let focus = number(value, "BFD_ghost");
     // Third-order aberration at this height is 1e-8 of the focus.
     close(crossing(1e-3), focus, 1e-6 * focus, &format!("{id} ghost focus"));
-    close(crossing(beam), number(value, "marginal_ray_ghost_crossing"), 1e-9 * focus, &format!("{id} marginal crossing"));
+    close(
+        crossing(beam),
+        number(value, "marginal_ray_ghost_crossing"),
+        1e-9 * focus,
+        &format!("{id} marginal crossing"),
+    );
     // Flux over the uniform beam: midpoints in r^2.
     let rays = 4000;
     let flux = (0..rays).map(|i| ghost(&compiled, beam * ((f64::from(i) + 0.5) / f64::from(rays)).sqrt()).1);
     let mean = flux.sum::<f64>() / f64::from(rays);
     let wanted = number(value, "ghost_flux_beam");
     close(mean, wanted, 1e-6 * wanted, &format!("{id} ghost flux"));
-    close(ghost(&compiled, 1e-9).1, number(value, "ghost_flux_normal_incidence"), 1e-9, &format!("{id} ghost flux on axis"));
+    close(
+        ghost(&compiled, 1e-9).1,
+        number(value, "ghost_flux_normal_incidence"),
+        1e-9,
+        &format!("{id} ghost flux on axis"),
+    );
     // The footprint on the plane of the direct focus: where the marginal ray of the ghost lands.
     let distance = number(value, "BFD_direct") + thickness;
     let (ray, _) = ghost(&compiled, beam);

@@ -16,9 +16,9 @@ fn rays(lens: &Singlet, count: u64, seed: u64) -> Vec<Ray> {
     let ray = |i: u64| {
         let mut rng = Rng::new(seed, i, 0);
         let side = (rng.uniform() * 2.0) as usize;
-        let angle = TAU * if i % 3 == 0 { (rng.uniform() * 24.0).floor() / 24.0 } else { rng.uniform() };
+        let angle = TAU * if i.is_multiple_of(3) { (rng.uniform() * 24.0).floor() / 24.0 } else { rng.uniform() };
         let rim = (lens.half * DVec2::from_angle(angle)).extend(lens.sag(side, lens.half));
-        let spread = if i % 2 == 0 { 10f64.powf(-9.0 * rng.uniform()) } else { lens.half };
+        let spread = if i.is_multiple_of(2) { 10f64.powf(-9.0 * rng.uniform()) } else { lens.half };
         let target = rim + spread * sampling::sphere(rng.pair());
         let origin = 60.0 * sampling::sphere(rng.pair());
         Ray { origin: 1e-3 * origin, direction: (target - origin).normalize() }
@@ -59,10 +59,8 @@ fn bodies() -> Vec<(&'static str, Compiled, Singlet)> {
         )
     };
     let spheroid = Model::new().add("lens", sphere(5.0, 2, Equal::Corners));
-    let whole = BICONVEX.sections(
-        "(on: Node(\"lens\"), exact: (form: Sphere(radius: \"5 mm\"), vertex: \"(0, 0, -5) mm\")),",
-        n,
-    );
+    let whole = BICONVEX
+        .sections("(on: Node(\"lens\"), exact: (form: Sphere(radius: \"5 mm\"), vertex: \"(0, 0, -5) mm\")),", n);
     let globe = Singlet { curvature: [0.2, -0.2], thickness: 10.0, half: 5.0 };
     let mut bodies = vec![
         ("cemented", system(&around(cemented, n), ""), BICONVEX),

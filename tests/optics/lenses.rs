@@ -147,7 +147,8 @@ fn len_04_stigmatic_conics() {
         "\"mirror\": (body: Mirror(form: Conic(radius: \"{:?} mm\", conic: -1), diameter: \"{diameter:?} mm\")),",
         -2.0 * f
     );
-    let sections = around(&mirror, 1.5).replace("default:", "surfaces: [(on: Node(\"mirror\"), specular: Mirror(reflectance: 1))], default:");
+    let sections = around(&mirror, 1.5)
+        .replace("default:", "surfaces: [(on: Node(\"mirror\"), specular: Mirror(reflectance: 1))], default:");
     let compiled = system(&sections, "");
     let (n, radius) = (case.given("/plano_hyperbolic/n"), case.given("/plano_hyperbolic/R"));
     let back = format!("Conic(radius: \"{radius:?} mm\", conic: {:?})", case.given("/plano_hyperbolic/conic"));
@@ -159,7 +160,8 @@ fn len_04_stigmatic_conics() {
             let (sin, cos) = (2.4 * f64::from(i)).sin_cos();
             size * r.sqrt() * DVec3::new(cos, sin, 0.0)
         };
-        let spot = |ray: Ray, z: f64| (ray.origin + (z - ray.origin.z) / ray.direction.z * ray.direction).truncate().length();
+        let spot =
+            |ray: Ray, z: f64| (ray.origin + (z - ray.origin.z) / ray.direction.z * ray.direction).truncate().length();
         let reflected = through(&compiled, at(0.5 * diameter) - 200.0 * DVec3::Z, DVec3::Z);
         let refracted = through(&lens, at(0.5 * case.given("/plano_hyperbolic/D")) - 50.0 * DVec3::Z, DVec3::Z);
         worst[0] = worst[0].max(spot(reflected, -f));

@@ -1,7 +1,7 @@
 //! Exact surfaces: lenses and mirrors from prescriptions and from meshes, against closed forms.
 
 #[macro_use]
-#[allow(unused_macros, unused_imports, reason = "one harness, several test targets")]
+#[allow(unused_imports, reason = "one harness, several test targets")]
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -101,7 +101,10 @@ fn a_mesh_with_exact_surfaces_sends_every_ray_where_the_prescription_does() {
                 let direction = DVec3::new(1e-3 * f64::from(i), -0.02, 1.0).normalize();
                 let from = from - 30.0 / direction.z * DVec3::new(direction.x, direction.y, 0.0);
                 let [a, b] = [&prescribed, &meshed].map(|system| through(system, from, direction));
-                assert!((a.origin - b.origin).length() < 1e-12 && (a.direction - b.direction).length() < 1e-14, "{a:?} {b:?}");
+                assert!(
+                    (a.origin - b.origin).length() < 1e-12 && (a.direction - b.direction).length() < 1e-14,
+                    "{a:?} {b:?}"
+                );
             }
         }
     }
@@ -119,7 +122,8 @@ fn the_ball_lens_mesh_has_its_focal_length_at_any_subdivision() {
              vertex: \"(0, 0, {:?}) mm\"))], default:",
             -radius
         );
-        let sections = around("", n).replace("geometry: [], elements: {  },", "geometry: [(file: \"parts.gltf\", unit: \"mm\")],");
+        let sections =
+            around("", n).replace("geometry: [], elements: {  },", "geometry: [(file: \"parts.gltf\", unit: \"mm\")],");
         let compiled = system(&sections.replace("default:", &entry), &model.gltf());
         for y in [1e-4, 2.0, 4.9] {
             let out = through(&compiled, DVec3::new(0.6 * y, 0.8 * y, -50.0), DVec3::Z);
@@ -158,8 +162,10 @@ fn len_07_faceted_ball_lens() {
         let levels = value["subdivision"].as_u64().expect("a number") as u32;
         let model = Model::new().add("ball", sphere(radius, levels, Equal::Corners));
         let entry = "surfaces: [(on: Node(\"ball\"), medium: \"glass\", specular: Fresnel)], default:";
-        let sections = around("", n).replace("geometry: [], elements: {  },", "geometry: [(file: \"parts.gltf\", unit: \"mm\")],");
-        let found = spot(&system(&sections.replace("default:", entry), &model.gltf()), case.given("/beam/radius"), z, 4000);
+        let sections =
+            around("", n).replace("geometry: [], elements: {  },", "geometry: [(file: \"parts.gltf\", unit: \"mm\")],");
+        let found =
+            spot(&system(&sections.replace("default:", entry), &model.gltf()), case.given("/beam/radius"), z, 4000);
         let wanted = number(value, "rms_spot");
         close(found, wanted, 4.0 * number(value, "sigma") + case.sys(), &format!("LEN-07 subdivision {levels}"));
     }
@@ -170,7 +176,8 @@ fn len_07_faceted_ball_lens() {
 fn len_05_tessellation_blurs_in_first_order() {
     let case = Case::load("LEN-05");
     let text = "plano-convex";
-    let values: Vec<_> = case.values().into_iter().filter(|v| v["case"].as_str().is_some_and(|c| c.starts_with(text))).collect();
+    let values: Vec<_> =
+        case.values().into_iter().filter(|v| v["case"].as_str().is_some_and(|c| c.starts_with(text))).collect();
     let (radius, thickness, half, n) = (51.68, 5.0, 5.0, 1.5168);
     let case_2 = Case::load("LEN-02");
     assert_eq!((case_2.given("/R1"), case_2.given("/thickness"), case_2.given("/n")), (radius, thickness, n));
@@ -214,8 +221,7 @@ fn lattice(radius: f64, thickness: f64, half: f64, h: f64) -> Mesh {
             }
         }
     }
-    let edges: std::collections::HashSet<_> =
-        top.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]).collect();
+    let edges: std::collections::HashSet<_> = top.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]).collect();
     let front = |(i, j): (i32, i32)| point(i, j).extend(sag(point(i, j)));
     let rear = |(i, j): (i32, i32)| point(i, j).extend(thickness);
     let mut mesh = Mesh::new();

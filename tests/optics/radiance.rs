@@ -53,7 +53,8 @@ fn determinant(j: &[Phase; 4]) -> f64 {
 #[test]
 fn rad_05_etendue_through_a_thick_lens() {
     let case = Case::load("RAD-05");
-    let lens = singlet(&form(case.setup("/lens/R1")), &form(case.setup("/lens/R2")), case.given("/lens/thickness"), 30.0);
+    let lens =
+        singlet(&form(case.setup("/lens/R1")), &form(case.setup("/lens/R2")), case.given("/lens/thickness"), 30.0);
     let compiled = system(&around(&lens, case.given("/lens/n")), "");
     let planes = [case.given("/start_plane_z"), case.given("/end_plane_z")];
     for value in case.values() {
@@ -85,7 +86,12 @@ fn etendue_is_conserved_by_every_form() {
         let compiled = system(&around(&singlet(front, "Sphere(radius: \"-70 mm\")", 12.0, 30.0), 1.5168), "");
         for from in [[2.0, -3.0, 0.02, 0.05], [-8.0, 6.0, 0.06, -0.03], [0.3, 0.2, -0.1, 0.1]] {
             let j = jacobian(|ray| mapped(&compiled, ray, [-20.0, 60.0]), from, 1e-4);
-            assert!((determinant(&j) - 1.0).abs() < 1e-6 && asymmetry(&j) < 1e-6, "{front} {from:?}: {} {}", determinant(&j), asymmetry(&j));
+            assert!(
+                (determinant(&j) - 1.0).abs() < 1e-6 && asymmetry(&j) < 1e-6,
+                "{front} {from:?}: {} {}",
+                determinant(&j),
+                asymmetry(&j)
+            );
         }
     }
 }
@@ -129,7 +135,10 @@ fn rad_07_hemispherical_immersion_lens() {
         .replace("extent: Point, at: \"(0, 0, -1000) mm\",", "extent: Node(name: \"sky\", side: Back),")
         .replace("Collimated(direction: \"(0, 0, 1)\")", "Lambertian")
         .replace(crate::lab::CERTAIN, "run: (rays: 600000, seed: 3, paths: 0),")
-        .replace("default:", "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:");
+        .replace(
+            "default:",
+            "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:",
+        );
     let compiled = system(&sections, "");
     let results = crate::lab::traced(&compiled);
     let flux = &results.detectors["fpa"].flux_w;
@@ -140,4 +149,113 @@ fn rad_07_hemispherical_immersion_lens() {
     let wanted = case.named("E/(pi L)");
     println!("RAD-07 E/(pi L) {found:.4} +- {error:.4}, reference {wanted:.4}");
     assert!(error < 0.03 * wanted && (found - wanted).abs() < 4.0 * error, "{found} +- {error}");
+}
+
+/// A pair of stigmatic lenses images a Lambertian disc: E = pi L sin^2 u', whatever is between.
+fn image_irradiance(id: &str) {
+    let case = Case::load(id);
+    let (object, image, n) = (case.given("/object_distance"), case.given("/image_distance"), 1.5168f64);
+    let wanted = number(&case.values()[0], "E_over_piL_aplanatic");
+    let tangent = (wanted / (1.0 - wanted)).sqrt();
+    let hyperboloid = |f: f64| format!("Conic(radius: \"{:?} mm\", conic: {:?})", (n - 1.0) * f, -n * n);
+    let stop = 0.8 * image;
+    let elements = format!(
+        "\"first\": (body: Lens(surfaces: [(form: {}), (form: Plane)], thickness: [\"15 mm\"], media: [\"glass\"], diameter: \"64 mm\")),
+         \"second\": (body: Lens(surfaces: [(form: Plane), (form: {})], thickness: [\"15 mm\"], media: [\"glass\"], diameter: \"64 mm\"),
+            at: \"(0, 0, 20) mm\"),
+         \"stop\": (body: Aperture(diameter: \"{:?} mm\", outer: \"200 mm\"), at: \"(0, 0, {:?}) mm\"),
+         \"fpa\": (body: Aperture(diameter: \"0 mm\", outer: \"1 mm\"), at: \"(0, 0, {:?}) mm\"),
+         \"lamp\": (body: Aperture(diameter: \"0 mm\", outer: \"6 mm\"), at: \"(0, 0, {:?}) mm\"),",
+        hyperboloid(object),
+        hyperboloid(-image),
+        2.0 * tangent * stop,
+        35.0 + image - stop,
+        35.0 + image,
+        -object
+    );
+    let half: f64 = 9.0;
+    let sections = around(&elements, n)
+        .replace("extent: Point, at: \"(0, 0, -1000) mm\",", "extent: Node(name: \"lamp\", side: Back),")
+        .replace("Collimated(direction: \"(0, 0, 1)\")", &format!("AngularDiameter(\"{} deg\")", 2.0 * half))
+        .replace(crate::lab::CERTAIN, "run: (rays: 1000000, seed: 5, paths: 0),")
+        .replace(
+            "default:",
+            "surfaces: [(on: Any([Tag(\"*.front\"), Tag(\"*.back\")]), specular: Absorb),
+                (on: Any([Tag(\"first.front\"), Tag(\"first.back\"), Tag(\"second.front\"), Tag(\"second.back\")]),
+                    specular: Ideal(reflectance: 0, transmittance: 1))],
+             detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, side: Front) }, default:",
+        );
+    let compiled = system(&sections, "");
+    let flux = &crate::lab::traced(&compiled).detectors["fpa"].flux_w;
+    // pi L = 1 W / (lamp area x sin^2 of the half angle); areas 9 pi and pi / 4 mm2.
+    let gain = 9.0 * half.to_radians().sin().powi(2) / 0.25;
+    let (found, error) = (flux.mean * gain, flux.error * gain);
+    println!("{id} E/(pi L) {found:.6} +- {error:.6}, reference {wanted:.6}");
+    // The polygon that the lamp's facets are is 0.07 % smaller than its disc.
+    assert!(error < 0.02 * wanted && (found - wanted).abs() < 4.0 * error + 1e-3 * wanted, "{found} +- {error}");
+}
+
+#[test]
+fn len_06_image_irradiance() {
+    image_irradiance("LEN-06");
+    image_irradiance("LEN-06x");
+}
+
+/// Peterson's sum over surfaces, with the ABg model's own values.
+#[test]
+fn str_05_in_field_scatter() {
+    use straylight::bsdf::{Abg, Bsdf};
+    use straylight::optics::Incidence;
+    let case = Case::load("STR-05");
+    let (na, entrance) = (case.given("/image_NA"), case.given("/entrance_beam_radius"));
+    for value in case.values() {
+        let r = number(&value, "r_mm");
+        let term = |surface: &serde_json::Value| {
+            let get = |name: &str| surface[name].as_f64().expect("a number");
+            let s = get("beam_footprint_radius");
+            let sine = na * r / s;
+            let model = Abg::new(get("A"), get("B"), get("g"), straylight::bsdf::Side::Reflect);
+            let wo = DVec3::new(sine, 0.0, (1.0 - sine * sine).sqrt());
+            get("T_after") * PI * na * na * (entrance / s).powi(2) * model.eval(&Incidence::in_air(0.0, 550e-9), wo)
+        };
+        let found: f64 = case.setup("/surfaces").as_array().expect("surfaces").iter().map(term).sum();
+        let wanted = number(&value, "E_over_Eent");
+        close(found, wanted, 1e-9, &format!("STR-05 r {r} mm"));
+    }
+}
+
+/// The plano-convex lens of LEN-02 turned over by a mirrored node, and the light with it: the same rays, mirrored.
+#[test]
+fn geo_04_mirrored_instance() {
+    use crate::meshes::Singlet;
+    use crate::support::Model;
+    let case = Case::load("LEN-02");
+    assert_eq!(Case::load("GEO-04").values()[0]["same_as"], "LEN-02");
+    let lens = Singlet { curvature: [1.0 / case.given("/R1"), 0.0], thickness: case.given("/thickness"), half: 12.0 };
+    let entry = |side: usize, z: f64| {
+        format!(
+            "(on: Faces(of: \"lens\", where: Normal(direction: \"(0, 0, {})\", within: \"20 deg\")), exact: (form: {}, \
+             vertex: \"(0, 0, {z:?}) mm\", relative: Node)),",
+            if side == 0 { -1 } else { 1 },
+            lens.form(side)
+        )
+    };
+    let mirrored = |entries: &str| {
+        entries.replace("(0, 0, -1)", "(0, 0, 9)").replace("(0, 0, 1)", "(0, 0, -1)").replace("(0, 0, 9)", "(0, 0, 1)")
+    };
+    let entries = entry(0, 0.0) + &entry(1, lens.thickness);
+    let gltf = Model::new().add("lens", lens.mesh(6, 64)).gltf();
+    let plain = system(&lens.sections(&entries, case.given("/n")), &gltf);
+    let turned = crate::lab::scaled_node(&gltf, "lens", DVec3::new(1.0, 1.0, -1.0));
+    // The form is written in the node's coordinates; its radius counts along the node's mirrored axis.
+    let turned = system(&lens.sections(&mirrored(&entries), case.given("/n")), &turned);
+    for y in case.list("/ray_heights") {
+        let a = through(&plain, DVec3::new(0.3, y, -50.0), DVec3::Z);
+        let b = through(&turned, DVec3::new(0.3, y, 50.0), -DVec3::Z);
+        let back = DVec3::new(1.0, 1.0, -1.0);
+        assert!(
+            (a.origin - back * b.origin).length() < 1e-9 && (a.direction - back * b.direction).length() < 1e-12,
+            "{a:?} {b:?}"
+        );
+    }
 }

@@ -41,9 +41,15 @@ pub enum Rim {
     /// Nowhere: a closed surface.
     Whole,
     /// Between two distances from the axis, m.
-    Ring { inner: f64, outer: f64 },
+    Ring {
+        inner: f64,
+        outer: f64,
+    },
     /// Between two heights along the axis, m: cones.
-    Band { low: f64, high: f64 },
+    Band {
+        low: f64,
+        high: f64,
+    },
     Outline(Outline),
 }
 
@@ -97,7 +103,7 @@ impl Surface {
         let [low, high] = heights.unwrap_or_else(|| levels(&shape, &rim, size));
         let across = match (&shape, &rim) {
             (Shape::Conic(conic), Rim::Whole) => conic.equator(),
-            
+
             _ => size,
         };
         let bounds = [DVec3::new(-across, -across, low), DVec3::new(across, across, high)];
@@ -169,7 +175,9 @@ impl Face {
         let corner = |i: usize| DVec3::select(glam::BVec3::new(i & 1 == 1, i & 2 == 2, i & 4 == 4), high, low);
         let corners = (0..8).map(|i| self.world(corner(i)));
         let [low, high] = corners.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or_default();
-        let pad = DVec3::splat(1e-12 * (high - low).max_element() + 8.0 * f64::EPSILON * high.abs().max(low.abs()).max_element());
+        let pad = DVec3::splat(
+            1e-12 * (high - low).max_element() + 8.0 * f64::EPSILON * high.abs().max(low.abs()).max_element(),
+        );
         [low - pad, high + pad]
     }
 

@@ -73,7 +73,9 @@ impl Outline {
 pub fn lift(sweep: Sweep, [a, b]: [DVec3; 2]) -> DVec3 {
     match sweep {
         Sweep::Y => DVec3::Z,
-        Sweep::Azimuth => (a.truncate().normalize_or_zero() + b.truncate().normalize_or_zero()).normalize_or_zero().extend(0.0),
+        Sweep::Azimuth => {
+            (a.truncate().normalize_or_zero() + b.truncate().normalize_or_zero()).normalize_or_zero().extend(0.0)
+        }
     }
 }
 
@@ -110,7 +112,9 @@ mod tests {
     #[test]
     fn a_star_with_a_hole_holds_what_winding_says() {
         let ring = |radius: &dyn Fn(usize) -> f64, n: usize| -> Vec<DVec3> {
-            (0..n).map(|i| (DVec2::from_angle(0.1 + TAU * i as f64 / n as f64) * radius(i)).extend(0.3 * i as f64)).collect()
+            (0..n)
+                .map(|i| (DVec2::from_angle(0.1 + TAU * i as f64 / n as f64) * radius(i)).extend(0.3 * i as f64))
+                .collect()
         };
         let star = ring(&|i| if i % 2 == 0 { 2.0 } else { 1.0 }, 10);
         let hole = ring(&|_| 0.4, 7);
@@ -131,7 +135,9 @@ mod tests {
 
     #[test]
     fn a_band_round_a_cylinder_is_bounded_by_its_two_rims() {
-        let rim = |z: f64| -> Vec<DVec3> { (0..24).map(|i| DVec2::from_angle(0.05 + TAU * f64::from(i) / 24.0).extend(z)).collect() };
+        let rim = |z: f64| -> Vec<DVec3> {
+            (0..24).map(|i| DVec2::from_angle(0.05 + TAU * f64::from(i) / 24.0).extend(z)).collect()
+        };
         let outline = Outline::new(Sweep::Azimuth, &[loop_of(&rim(1.0)), loop_of(&rim(2.0))].concat());
         for i in 0..1000 {
             let around = DVec2::from_angle(PI - 0.2 + 1e-3 * f64::from(i));

@@ -56,7 +56,11 @@ fn bracketed(g: &impl Fn(f64) -> [f64; 2], from: (f64, f64), to: (f64, f64)) -> 
         if value == 0.0 {
             break;
         }
-        if (value < 0.0) == rises { low = t } else { high = t }
+        if (value < 0.0) == rises {
+            low = t
+        } else {
+            high = t
+        }
         let next = t - value / slope;
         if next == t || high - low <= f64::EPSILON * (low.abs() + high.abs()) {
             break;

@@ -101,6 +101,13 @@ pub struct Placed {
     pub warnings: Vec<Problem>,
 }
 
+impl Placed {
+    /// The parts as a binary glTF file.
+    pub fn glb(&self) -> Vec<u8> {
+        super::gltf::glb(&self.nodes, self.shift)
+    }
+}
+
 /// Reads and places the geometry of a document; everything else must be right as well.
 pub fn geometry(document: &Document) -> Result<Placed, Error> {
     let (compiled, assembly) = build(document)?;

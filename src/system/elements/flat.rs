@@ -66,7 +66,7 @@ pub fn prism(corners: &[[f64; 2]], length: f64, medium: Option<String>) -> Resul
 
 pub fn spider(vanes: u32, width: f64, depth: f64, inner: f64, outer: f64) -> Result<Draft, Problem> {
     let (half, depth) = (0.5 * positive(width, "the width of a vane")?, positive(depth, "the depth of a vane")?);
-    if !(1..=64).contains(&vanes) || !(inner >= 0.0 && inner < outer) {
+    if !((1..=64).contains(&vanes) && inner >= 0.0 && inner < outer) {
         return Err(Problem::error(format!("{vanes} vanes from {inner} m to {outer} m"))
             .expecting("1 to 64 vanes, an inner diameter below the outer one"));
     }
@@ -74,7 +74,12 @@ pub fn spider(vanes: u32, width: f64, depth: f64, inner: f64, outer: f64) -> Res
     for vane in 0..vanes {
         let out = DVec2::from_angle(TAU * f64::from(vane) / f64::from(vanes));
         let corner = |radius: f64, side: f64| (radius * out + side * out.perp()).extend(0.0);
-        let base = [corner(0.5 * inner, -half), corner(0.5 * outer, -half), corner(0.5 * outer, half), corner(0.5 * inner, half)];
+        let base = [
+            corner(0.5 * inner, -half),
+            corner(0.5 * outer, -half),
+            corner(0.5 * outer, half),
+            corner(0.5 * inner, half),
+        ];
         draft.extruded(&base, depth * DVec3::Z, &|_| "side".to_owned(), ["front", "back"]);
     }
     Ok(draft)

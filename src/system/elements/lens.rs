@@ -95,7 +95,9 @@ pub fn mirror(form: &Form, diameter: f64, hole: f64, thickness: Option<f64>) -> 
     let edge = 0.5 * positive(diameter, "the diameter of the mirror")?;
     let inner = 0.5 * hole;
     if !(0.0..edge).contains(&inner) {
-        return Err(Problem::error("the hole is no smaller than the mirror").expecting("a hole of 0 or more, below `diameter`"));
+        return Err(
+            Problem::error("the hole is no smaller than the mirror").expecting("a hole of 0 or more, below `diameter`")
+        );
     }
     let cap = Cap { shape: exact::shape(form, edge)?, vertex: 0.0, semi: edge };
     let front = |from, to| stretch("front", cap.curve(from, to));

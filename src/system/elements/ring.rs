@@ -45,7 +45,8 @@ const EDGE: u32 = 12;
 /// the angle of a stretch.
 pub fn vane(inner: f64, outer: f64, thickness: f64, bevel: f64, rho: f64) -> Result<Draft, Problem> {
     let [hole, shell] = radii(inner, outer)?;
-    let (rho, thickness) = (positive(rho, "the radius of the edge")?, positive(thickness, "the thickness of the vane")?);
+    let (rho, thickness) =
+        (positive(rho, "the radius of the edge")?, positive(thickness, "the thickness of the vane")?);
     if !(bevel > 0.0 && bevel < 0.5 * PI) {
         return Err(Problem::error("the angle of the bevel").expecting("an angle above 0 and below 90 deg"));
     }

@@ -6,9 +6,6 @@
 //!
 //! Left out: lines and points, skins, morph targets, animations, compressed geometry; each is said.
 
-// A problem is large because it says much; it is made once, and ends the reading.
-#![allow(clippy::result_large_err)]
-
 mod accessor;
 mod container;
 mod document;

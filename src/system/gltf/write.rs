@@ -86,7 +86,8 @@ impl File {
 
     fn bytes(mut self) -> Vec<u8> {
         let roots: Vec<usize> = (0..self.nodes.len()).collect();
-        let materials: Vec<Value> = self.materials.iter().map(|name| json!({"name": name, "doubleSided": true})).collect();
+        let materials: Vec<Value> =
+            self.materials.iter().map(|name| json!({"name": name, "doubleSided": true})).collect();
         let mut root = json!({"asset": {"version": "2.0", "generator": "straylight"}});
         if !roots.is_empty() {
             root["scene"] = json!(0);

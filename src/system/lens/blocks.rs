@@ -7,11 +7,24 @@ use glam::{DMat3, DVec3};
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {
     /// Surfaces `from..=to` with glass between them; `mirrored`: the last one reflects.
-    Lens { from: usize, to: usize, mirrored: bool },
-    Mirror { at: usize, radius: f64, hole: Option<f64> },
-    Stop { at: usize },
+    Lens {
+        from: usize,
+        to: usize,
+        mirrored: bool,
+    },
+    Mirror {
+        at: usize,
+        radius: f64,
+        hole: Option<f64>,
+    },
+    Stop {
+        at: usize,
+    },
     /// A screen of a radius, m.
-    Disc { at: usize, radius: f64 },
+    Disc {
+        at: usize,
+        radius: f64,
+    },
 }
 
 /// What was cut, and what was left out.
@@ -46,7 +59,8 @@ pub fn cut(lens: &Prescription, radii: &[f64]) -> Cut {
                 _ => false,
             });
             if seen {
-                cut.notes.push(format!("surfaces {i} to {to}: the light passes the same glass again; it is written once"));
+                cut.notes
+                    .push(format!("surfaces {i} to {to}: the light passes the same glass again; it is written once"));
             } else {
                 cut.blocks.push(Block::Lens { from: i, to, mirrored });
             }
@@ -64,7 +78,11 @@ pub fn cut(lens: &Prescription, radii: &[f64]) -> Cut {
         } else if surface.material != Material::Previous {
             cut.notes.push(format!("surface {i}: a dummy surface in air, left out"));
         }
-        if surface.openings.iter().any(|opening| !matches!(opening.outline, Outline::Circle(_)) || opening.centre != [0.0; 2]) {
+        if surface
+            .openings
+            .iter()
+            .any(|opening| !matches!(opening.outline, Outline::Circle(_)) || opening.centre != [0.0; 2])
+        {
             cut.notes.push(format!("surface {i}: an opening that is not a centred circle is left out"));
         }
         i += 1;

@@ -71,7 +71,8 @@ pub fn find(name: &str, maker: Option<&str>) -> Result<Entry, Problem> {
     let found = || Shelf::Glass.entries().filter(same);
     // Several makers: the first of Schott, Hoya, Ohara, as the glass was named first by Schott in most cases.
     let first = ["SCHOTT", "HOYA", "OHARA"].into_iter().find_map(|maker| found().find(|e| e.name.starts_with(maker)));
-    let crystal = || CRYSTALS.iter().find(|(alias, _)| *alias == wanted).and_then(|(_, name)| Shelf::Material.find(name).ok());
+    let crystal =
+        || CRYSTALS.iter().find(|(alias, _)| *alias == wanted).and_then(|(_, name)| Shelf::Material.find(name).ok());
     first.or_else(|| found().next()).or_else(crystal).ok_or_else(|| {
         Problem::error(format!("the built-in catalogue has no glass {name}"))
             .expecting("a glass of SCHOTT, OHARA or HOYA, or its index in the file")

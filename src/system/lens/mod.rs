@@ -3,6 +3,7 @@
 mod blocks;
 mod glass;
 mod sequence;
+mod text;
 mod write;
 
 pub use glass::{index, vacuum};

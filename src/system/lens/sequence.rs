@@ -3,9 +3,7 @@
 //! Lenses and mirrors follow each other in the order in which the system names them; each must stand on the common axis. A lens
 //! behind an odd number of mirrors is met from behind. The stop is the aperture called "stop", else the first one with a hole.
 
-use crate::prescription::{
-    Aperture, Curve, Field, FieldPoint, Material, Prescription, Profile, Surface, Term,
-};
+use crate::prescription::{Aperture, Curve, Field, FieldPoint, Material, Prescription, Profile, Surface, Term};
 use crate::system::document::{Body, Element, Form, Names};
 use crate::system::units::Coefficient;
 use glam::DVec3;
@@ -62,20 +60,36 @@ pub fn sequence(elements: &Names<Element>, field: f64, wavelength: f64) -> Resul
                     let medium = glass.and_then(|g| media.get(g)).filter(|_| place + 1 < order.len());
                     let material = medium.map_or(Material::Air, |m| Material::Glass { name: m.clone(), maker: None });
                     let size = surfaces[i].semi_diameter.or(diameter.map(|d| crate::system::units::Length(0.5 * d.0)));
-                    let profile = profile(&surfaces[i].form).ok_or_else(|| format!("`{name}` is no surface of revolution"))?;
-                    let surface = Surface { label: name.to_owned(), profile, material, semi_diameter: size.map(|s| s.0), ..Surface::plane() };
+                    let profile =
+                        profile(&surfaces[i].form).ok_or_else(|| format!("`{name}` is no surface of revolution"))?;
+                    let surface = Surface {
+                        label: name.to_owned(),
+                        profile,
+                        material,
+                        semi_diameter: size.map(|s| s.0),
+                        ..Surface::plane()
+                    };
                     stations.push(Station { surface, z: heights[i] });
                 }
             }
             Body::Mirror { form, diameter, .. } => {
                 let profile = profile(form).ok_or_else(|| format!("`{name}` is no surface of revolution"))?;
-                let surface = Surface { label: name.to_owned(), profile, material: Material::Mirror, semi_diameter: Some(0.5 * diameter.0), ..Surface::plane() };
+                let surface = Surface {
+                    label: name.to_owned(),
+                    profile,
+                    material: Material::Mirror,
+                    semi_diameter: Some(0.5 * diameter.0),
+                    ..Surface::plane()
+                };
                 stations.push(Station { surface, z: element.at.0.z });
                 backward = !backward;
             }
-            Body::Aperture { diameter, .. } if diameter.0 > 0.0 && (name.to_lowercase().contains("stop") || stop.is_none()) && !named => {
+            Body::Aperture { diameter, .. }
+                if diameter.0 > 0.0 && (name.to_lowercase().contains("stop") || stop.is_none()) && !named =>
+            {
                 named = name.to_lowercase().contains("stop");
-                let surface = Surface { label: name.to_owned(), semi_diameter: Some(0.5 * diameter.0), ..Surface::plane() };
+                let surface =
+                    Surface { label: name.to_owned(), semi_diameter: Some(0.5 * diameter.0), ..Surface::plane() };
                 if let Some(old) = stop.replace(stations.len()) {
                     stations.remove(old);
                     stop = Some(stations.len());

@@ -2,6 +2,7 @@
 
 use super::blocks::{Block, angles, cut};
 use super::glass::{find, index, model, vacuum};
+use super::text::{form, mm, number, tabulated, vector};
 use crate::error::Problem;
 use crate::medium::catalog::Shelf;
 use crate::prescription::paraxial::{FirstOrder, first_order};
@@ -39,7 +40,14 @@ pub fn system(lens: &Prescription) -> Result<Written, Problem> {
             Block::Stop { .. } | Block::Disc { .. } => {}
         }
     }
-    let mut draft = Draft { lens, optics: &optics, radii: &radii, elements: String::new(), surfaces: String::new(), media: Vec::new() };
+    let mut draft = Draft {
+        lens,
+        optics: &optics,
+        radii: &radii,
+        elements: String::new(),
+        surfaces: String::new(),
+        media: Vec::new(),
+    };
     for block in &cut.blocks {
         draft.block(block, &mut notes)?;
     }
@@ -78,7 +86,8 @@ fn meet_edge(lens: &Prescription, radii: &mut [f64], i: usize) -> Option<String>
 /// A hole where light that was reflected on goes through the mirror again, if the file has none.
 fn pierce(lens: &Prescription, optics: &FirstOrder, at: usize, radius: f64, hole: &mut Option<f64>) -> Option<String> {
     let frames = lens.frames();
-    let centred = |frame: &crate::prescription::Motion| frame.shift.truncate().length() < 1e-12 && frame.turn == DMat3::IDENTITY;
+    let centred =
+        |frame: &crate::prescription::Motion| frame.shift.truncate().length() < 1e-12 && frame.turn == DMat3::IDENTITY;
     if !frames.iter().all(centred) {
         return None;
     }
@@ -95,21 +104,14 @@ fn pierce(lens: &Prescription, optics: &FirstOrder, at: usize, radius: f64, hole
         return None;
     }
     *hole = Some(MARGIN * needed);
-    Some(format!("surface {at}: light goes through this mirror; a hole of radius {:.6} mm was cut for it", 1e3 * MARGIN * needed))
+    Some(format!(
+        "surface {at}: light goes through this mirror; a hole of radius {:.6} mm was cut for it",
+        1e3 * MARGIN * needed
+    ))
 }
 
 fn note(note: &crate::prescription::Note) -> String {
     note.line.map_or_else(|| note.text.clone(), |line| format!("line {line}: {}", note.text))
-}
-
-/// A number with 14 digits, as short as it goes.
-fn number(x: f64) -> String {
-    let rounded: f64 = format!("{x:.13e}").parse().unwrap_or(x);
-    format!("{rounded:?}")
-}
-
-fn mm(metres: f64) -> String {
-    format!("\"{} mm\"", number(1e3 * metres))
 }
 
 struct Draft<'a> {
@@ -128,7 +130,11 @@ impl Draft<'_> {
             Block::Lens { from, to, mirrored } => self.glass(from, to, mirrored, notes),
             Block::Mirror { at, radius, hole } => {
                 let hole = hole.map_or(String::new(), |hole| format!(", hole: {}", mm(2.0 * hole)));
-                let body = format!("Mirror(form: {}, diameter: {}{hole})", form(&self.lens.surfaces[at].profile)?, mm(2.0 * radius));
+                let body = format!(
+                    "Mirror(form: {}, diameter: {}{hole})",
+                    form(&self.lens.surfaces[at].profile)?,
+                    mm(2.0 * radius)
+                );
                 let name = self.place(&format!("M{at}"), &body, at);
                 let _ = writeln!(self.surfaces, "        (on: Node({name:?}), specular: Mirror(reflectance: 1)),");
                 Ok(())
@@ -166,7 +172,11 @@ impl Draft<'_> {
         }
         let mut surfaces = Vec::new();
         for &i in &order {
-            surfaces.push(format!("(form: {}, semi_diameter: {})", form(&self.lens.surfaces[i].profile)?, mm(self.radii[i])));
+            surfaces.push(format!(
+                "(form: {}, semi_diameter: {})",
+                form(&self.lens.surfaces[i].profile)?,
+                mm(self.radii[i])
+            ));
         }
         let list = |items: Vec<String>| format!("[{}]", items.join(", "));
         let body = format!(
@@ -198,7 +208,11 @@ impl Draft<'_> {
         } else {
             format!(", rotate: \"{} deg\"", triple(turn, 180.0 / std::f64::consts::PI))
         };
-        let _ = writeln!(self.elements, "        {name:?}: (body: {body}, at: \"{} mm\"{rotate}),", triple(frame.shift, 1e3));
+        let _ = writeln!(
+            self.elements,
+            "        {name:?}: (body: {body}, at: \"{} mm\"{rotate}),",
+            triple(frame.shift, 1e3)
+        );
         name.to_owned()
     }
 
@@ -277,8 +291,10 @@ impl Draft<'_> {
 
     /// Whether a lens has surfaces of different size.
     fn has_shoulders(&self) -> bool {
-        let glass = |i: usize| *self.lens.medium(i) != Material::Air && self.lens.surfaces[i].material != Material::Mirror;
-        (1..self.lens.surfaces.len() - 1).any(|i| glass(i) && number(1e3 * self.radii[i]) != number(1e3 * self.radii[i + 1]))
+        let glass =
+            |i: usize| *self.lens.medium(i) != Material::Air && self.lens.surfaces[i].material != Material::Mirror;
+        (1..self.lens.surfaces.len() - 1)
+            .any(|i| glass(i) && number(1e3 * self.radii[i]) != number(1e3 * self.radii[i + 1]))
     }
 
     /// One source for every field.
@@ -286,7 +302,11 @@ impl Draft<'_> {
         let (lens, pupil) = (self.lens, &self.optics.entrance_pupil);
         let radius = 0.5 * MARGIN * pupil.diameter.abs();
         let nearest = lens.frames()[1..].iter().map(|frame| frame.shift.z).fold(0.0, f64::min);
-        let waves: Vec<String> = lens.wavelengths.iter().map(|(w, weight)| format!("(\"{} nm\", {})", number(1e9 * vacuum(*w).0), number(*weight))).collect();
+        let waves: Vec<String> = lens
+            .wavelengths
+            .iter()
+            .map(|(w, weight)| format!("(\"{} nm\", {})", number(1e9 * vacuum(*w).0), number(*weight)))
+            .collect();
         let spectrum = match lens.wavelengths[..] {
             [(only, _)] => format!("Line(\"{} nm\")", number(1e9 * vacuum(only).0)),
             _ => format!("Lines([{}])", waves.join(", ")),
@@ -300,7 +320,11 @@ impl Draft<'_> {
             let (from, angular, extent) = match self.object(point) {
                 Origin::Far(direction) => {
                     let back = (towards.z - nearest) / direction.z + 2.0 * radius;
-                    (towards - back * direction, format!("Collimated(direction: \"{}\")", vector(direction, 1.0)), format!("Disk(radius: {})", mm(radius)))
+                    (
+                        towards - back * direction,
+                        format!("Collimated(direction: \"{}\")", vector(direction, 1.0)),
+                        format!("Disk(radius: {})", mm(radius)),
+                    )
                 }
                 Origin::Near(place) => {
                     let half = (radius / (towards - place).length()).atan().to_degrees();
@@ -347,44 +371,4 @@ enum Origin {
     Far(DVec3),
     /// From a point, m.
     Near(DVec3),
-}
-
-fn vector(v: DVec3, scale: f64) -> String {
-    let [x, y, z] = (scale * v).to_array().map(|x| number(if x == 0.0 { 0.0 } else { x }));
-    format!("({x}, {y}, {z})")
-}
-
-/// Indices relative to air over wavelengths in air, as a table of absolute ones over those in vacuum.
-fn tabulated(indices: &[(f64, f64)]) -> String {
-    let wavelengths: Vec<String> = indices.iter().map(|(w, _)| format!("\"{} nm\"", number(1e9 * vacuum(*w).0))).collect();
-    let n: Vec<String> = indices.iter().map(|(w, n)| number(n * vacuum(*w).1)).collect();
-    format!("Tabulated(wavelength: [{}], n: [{}])", wavelengths.join(", "), n.join(", "))
-}
-
-/// The form of a surface in RON.
-fn form(profile: &Profile) -> Result<String, Problem> {
-    let radius = |c: f64| if c == 0.0 { String::new() } else { format!("radius: {}, ", mm(1.0 / c)) };
-    let conic = |k: f64| if k == 0.0 { String::new() } else { format!("conic: {}, ", number(k)) };
-    // In mm, as lens designers read them.
-    let term = |power: u32, a: f64| format!("({power}, \"{} mm^{}\")", number(a * 1e3f64.powi(1 - power as i32)), 1 - power as i32);
-    let terms = |terms: &[crate::prescription::Term]| {
-        let written: Vec<String> = terms.iter().map(|t| term(t.power, t.coefficient)).collect();
-        format!("terms: [{}]", written.join(", "))
-    };
-    Ok(match profile {
-        Profile::Revolved(curve) if !curve.terms.is_empty() => {
-            format!("Asphere({}{}{})", radius(curve.curvature), conic(curve.conic), terms(&curve.terms))
-        }
-        Profile::Revolved(curve) if curve.curvature == 0.0 => "Plane".to_owned(),
-        Profile::Revolved(curve) if curve.conic == 0.0 => format!("Sphere({})", radius(curve.curvature).trim_end_matches(", ")),
-        Profile::Revolved(curve) => format!("Conic({}conic: {})", radius(curve.curvature), number(curve.conic)),
-        Profile::Toroid { curve, radius: turned } => {
-            let rotation = if turned.is_infinite() { String::new() } else { format!(", rotation: {}", mm(*turned)) };
-            format!("Toroid({}{}{}{rotation})", radius(curve.curvature), conic(curve.conic), terms(&curve.terms))
-        }
-        Profile::Thin { .. } => {
-            return Err(Problem::error("an ideal thin lens: it has no surface and breaks etendue")
-                .expecting("a lens of real surfaces"));
-        }
-    })
 }

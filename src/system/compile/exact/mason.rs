@@ -19,7 +19,8 @@ pub fn faces(shop: &mut Shop, assembly: &mut Assembly) {
     for (index, node) in assembly.nodes.iter().enumerate() {
         let mut built = NodeFaces::default();
         if !node.exact.is_empty() {
-            let mason = Mason { node, part_of: &assembly.part_of[assembly.first[index] as usize..], directed: directed(node) };
+            let mason =
+                Mason { node, part_of: &assembly.part_of[assembly.first[index] as usize..], directed: directed(node) };
             for declared in &node.exact {
                 if let Err(problem) = mason.build(declared, &mut built) {
                     let problem = Problem { message: format!("`{}`: {}", node.name, problem.message), ..problem };

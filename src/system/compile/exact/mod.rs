@@ -52,7 +52,8 @@ pub fn declare(shop: &mut Shop, assembly: &mut Assembly) {
     }
     for node in assembly.nodes.iter_mut().filter(|node| !node.is_element) {
         if !walls::round(node) {
-            let problem = format!("the rim of a lens surface of `{}` stays a polygon: what borders it is not round", node.name);
+            let problem =
+                format!("the rim of a lens surface of `{}` stays a polygon: what borders it is not round", node.name);
             let hint = "leave out `semi_diameter`, or declare the edge with `exact: (form: Cylinder(..))`".to_owned();
             shop.fault("surfaces", Problem::warning(problem).hinting(hint));
         }
@@ -86,7 +87,12 @@ fn settle(node: &mut Node) {
 }
 
 /// What an entry declares of some triangles of a node.
-fn declared(exact: &written::Exact, node: &mut Node, mut triangles: Vec<u32>, shift: DVec3) -> Result<Declared, Problem> {
+fn declared(
+    exact: &written::Exact,
+    node: &mut Node,
+    mut triangles: Vec<u32>,
+    shift: DVec3,
+) -> Result<Declared, Problem> {
     if !is_rigid(&node.moved) {
         let problem = Problem::error("it is scaled by `configure`, which would change this shape");
         return Err(problem.expecting("a node that is only moved and turned"));
@@ -103,7 +109,8 @@ fn declared(exact: &written::Exact, node: &mut Node, mut triangles: Vec<u32>, sh
         let form = shape(&exact.form, 0.0)?;
         triangles.retain(|&t| corners(node, t).iter().all(|p| form.distance(*p) <= rough));
         if triangles.is_empty() {
-            return Err(Problem::error("no triangle lies that near to the shape").hinting("`straylight fit` finds shapes".to_owned()));
+            return Err(Problem::error("no triangle lies that near to the shape")
+                .hinting("`straylight fit` finds shapes".to_owned()));
         }
     }
     // Spheres and conics may go up to their equator and round it: their corners are judged by their distance alone.
@@ -114,9 +121,9 @@ fn declared(exact: &written::Exact, node: &mut Node, mut triangles: Vec<u32>, sh
     let far = far.fold(0.0, |most: f64, d| if d.is_nan() { f64::INFINITY } else { most.max(d) });
     if far > rough {
         let problem = format!("its corners lie up to {:.3e} mm from this shape", 1e3 * far);
-        return Err(Problem::error(problem)
-            .expecting(format!("at most {:.3e} mm", 1e3 * rough))
-            .hinting("`straylight fit` finds shapes; the sign: R > 0 if the centre lies towards +z of `axis`".to_owned()));
+        return Err(Problem::error(problem).expecting(format!("at most {:.3e} mm", 1e3 * rough)).hinting(
+            "`straylight fit` finds shapes; the sign: R > 0 if the centre lies towards +z of `axis`".to_owned(),
+        ));
     }
     let mut declared = Declared { triangles, shape: form, at, frame, rim: Round::Polygon };
     if let Some(semi) = exact.semi_diameter {

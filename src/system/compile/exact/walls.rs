@@ -17,7 +17,8 @@ pub fn round(node: &mut Node) -> bool {
         if !matches!(node.exact[index].rim, Round::Ring { .. }) {
             continue;
         }
-        let rings: HashSet<u32> = node.exact.iter().filter(|d| d.rim != Round::Polygon).flat_map(|d| d.triangles.clone()).collect();
+        let rings: HashSet<u32> =
+            node.exact.iter().filter(|d| d.rim != Round::Polygon).flat_map(|d| d.triangles.clone()).collect();
         let edges = outline(node, &node.exact[index].triangles, &directed(node));
         let beyond = edges.iter().filter_map(|edge| edge.beyond).find(|t| !rings.contains(t));
         let Some(seed) = beyond else { continue };

@@ -1,6 +1,6 @@
 //! What touches what, and what lies in what: found by rays from points of the triangles.
 
-use crate::geometry::{Hit, Left, Ray};
+use crate::geometry::{Crossing, Hit, Left, Ray};
 use crate::scene::Scene;
 use crate::system::compile::assembly::Assembly;
 use glam::DVec3;
@@ -31,9 +31,20 @@ pub(super) fn contacts(scene: &Scene) -> Contacts {
         let (normal, corners) = (geometry.normal(triangle), geometry.triangle(triangle).vertices);
         for weights in looks {
             let place: DVec3 = corners.iter().zip(weights).map(|(corner, weight)| *corner * *weight).sum();
-            let ray = Ray { origin: place / weights.iter().sum::<f64>() + height * normal, direction: -normal };
+            let place = place / weights.iter().sum::<f64>();
+            let ray = Ray { origin: place + height * normal, direction: -normal };
             let Some(crossing) = geometry.nearest(&ray, &Left::nothing()) else { continue };
-            let Some(own) = crossing.hits.iter().find(|hit| hit.triangle == triangle) else { continue };
+            let met = |hit: &&Hit| hit.triangle == triangle;
+            let crossing = match crossing.hits.iter().find(met) {
+                Some(_) => crossing,
+                None => match exact(scene, triangle, place, normal) {
+                    Some(crossing) => crossing,
+                    None => continue,
+                },
+            };
+            let part = scene.part_of[triangle as usize];
+            let mine = |hit: &&Hit| met(hit) || scene.part_of[hit.triangle as usize] == part;
+            let Some(own) = crossing.hits.iter().find(mine) else { continue };
             for other in crossing.hits.iter().filter(|hit| hit.object != own.object) {
                 let [a, b] = [own, other].map(|hit| scene.part_of[hit.triangle as usize]);
                 let (key, hits) = if a < b { ([a, b], [*own, *other]) } else { ([b, a], [*other, *own]) };
@@ -42,6 +53,27 @@ pub(super) fn contacts(scene: &Scene) -> Contacts {
         }
     }
     contacts
+}
+
+/// Where the exact face that stands for a triangle is met, within the triangle's size of `place`.
+fn exact(scene: &Scene, triangle: u32, place: DVec3, normal: DVec3) -> Option<Crossing> {
+    let geometry = &scene.geometry;
+    let [a, b, c] = geometry.triangle(triangle).vertices;
+    let reach = (b - a).length().max((c - b).length()).max((a - c).length());
+    let (mut ray, mut left) = (Ray { origin: place + reach * normal, direction: -normal }, Left::nothing());
+    let (mut way, part) = (0.0, scene.part_of[triangle as usize]);
+    while way <= 2.0 * reach {
+        let crossing = geometry.nearest(&ray, &left)?;
+        let own = |hit: &Hit| hit.triangle as usize >= geometry.len() && scene.part_of[hit.triangle as usize] == part;
+        if crossing.hits.iter().any(own) {
+            return Some(crossing);
+        }
+        way += crossing.distance;
+        (ray.origin, left) = (crossing.point, Left::after(&crossing, true, &left));
+        // Several things in one place do not bring it on.
+        way += 1e-3 * reach;
+    }
+    None
 }
 
 /// Nodes that touch node `node`.
@@ -78,9 +110,15 @@ pub(super) fn holders(scene: &Scene, assembly: &Assembly, node: usize, touching:
     let count = assembly.nodes[node].mesh.triangles.len();
     let mut held = BTreeMap::<u32, usize>::new();
     let mut tried = 0;
-    for (_, corners) in assembly.triangles_of(node).step_by(count.div_ceil(points)) {
+    let first = assembly.first[node];
+    let exact: BTreeSet<u32> = assembly.exact[node].replaced.iter().copied().collect();
+    for (triangle, corners) in assembly.triangles_of(node).step_by(count.div_ceil(points)) {
         tried += 1;
-        let middle = corners.iter().sum::<DVec3>() / 3.0;
+        let [a, b, c] = corners;
+        // The middle of a facet that an exact face stands for is off that face: inwards by more than its sagitta.
+        let inwards =
+            if exact.contains(&(triangle - first)) { 0.05 * (b - a).length().max((c - b).length()) } else { 0.0 };
+        let middle = (a + b + c) / 3.0 - inwards * (b - a).cross(c - a).normalize_or_zero();
         for holder in around(scene, &closed, middle).into_iter().filter(|&holder| holder as usize != node) {
             *held.entry(holder).or_default() += 1;
         }

@@ -39,7 +39,8 @@ type Note<'a> = &'a mut dyn FnMut(&str, Problem);
 fn sizes(assembly: &Assembly, note: Note) {
     let files: BTreeSet<usize> = assembly.file_of.iter().copied().flatten().collect();
     let size = |of: Option<usize>| {
-        let nodes = assembly.nodes.iter().zip(&assembly.file_of).filter(|(_, file)| of.is_none_or(|of| **file == Some(of)));
+        let nodes =
+            assembly.nodes.iter().zip(&assembly.file_of).filter(|(_, file)| of.is_none_or(|of| **file == Some(of)));
         let boxes = nodes.filter_map(|(node, _)| node.mesh.bounds());
         let whole = boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         whole.map_or(0.0, |[low, high]| (high - low).max_element())

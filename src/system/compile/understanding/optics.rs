@@ -44,7 +44,9 @@ pub(super) fn optics(scene: &Scene, document: &Document) -> Option<Result<Optics
 /// Greatest angle of the collimated sources to the axis, rad.
 fn field(scene: &Scene) -> f64 {
     let beams = scene.sources.iter().filter(|source| matches!(source.angular.pattern, Pattern::Collimated));
-    let axes = beams.filter_map(|source| source.angular.frame()).map(|frame| frame.z.truncate().length().atan2(frame.z.z.abs()));
+    let axes = beams
+        .filter_map(|source| source.angular.frame())
+        .map(|frame| frame.z.truncate().length().atan2(frame.z.z.abs()));
     let most = axes.fold(0.0, f64::max);
     if most > 0.0 { most } else { FIELD }
 }
