@@ -25,7 +25,7 @@ pub struct CheckArgs {
     pub system: PathBuf,
     #[command(flatten)]
     pub chosen: Chosen,
-    /// Older state, a system (.ron) or a glTF file: tell first what is new, lost, renamed or moved since
+    /// Older system or glTF file: tell first what changed since
     #[arg(long, value_name = "OLD")]
     pub against: Option<PathBuf>,
 }

@@ -60,10 +60,10 @@ pub enum Verb {
 /// What is chosen of a system.
 #[derive(Args)]
 pub struct Chosen {
-    /// Parameter of the system and its value: hood.length="120 mm"; may be repeated
+    /// Set a parameter of the system: hood.length="120 mm"; may be repeated
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<(String, String)>,
-    /// Named set of parameters, from the system's `configurations`
+    /// Choose one of the system's `configurations`
     #[arg(long, value_name = "NAME")]
     pub configuration: Option<String>,
 }

@@ -68,8 +68,8 @@ pub fn read(shop: &mut Shop) -> Assembly {
 
 impl Shop<'_> {
     /// The content of a glTF file that is named at a path of the document; what is wrong with it is noted.
-    pub fn gltf(&mut self, file: &Path, path: &str) -> Option<GltfFile> {
-        let file = match gltf::read(&self.document.resolve(file)) {
+    pub fn gltf(&mut self, written: &Path, path: &str) -> Option<GltfFile> {
+        let file = match gltf::read(&self.document.resolve(written)) {
             Ok(file) => file,
             Err(problems) => {
                 self.problems.extend(problems);
@@ -78,7 +78,8 @@ impl Shop<'_> {
         };
         self.problems.extend_from_slice(&file.warnings);
         for read in &file.files {
-            let name = read.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+            // Buffers lie beside the file, which may be in another folder than one of the same name.
+            let name = written.with_file_name(read.file_name().unwrap_or_default()).display().to_string();
             match std::fs::read(read) {
                 Ok(bytes) => self.input(&name, &bytes),
                 Err(error) => self.fault(path, Problem::error(format!("{name}: {error}"))),
