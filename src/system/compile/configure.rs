@@ -8,9 +8,6 @@
 //! Exact shapes go along with their nodes. A scale would change what they are, so a node that has any is not scaled: elements
 //! have dimensions, which may be expressions.
 
-// A problem is large because it says much; it is made once.
-#![allow(clippy::result_large_err)]
-
 use super::Shop;
 use super::assembly::Assembly;
 use crate::error::Problem;

@@ -3,9 +3,6 @@
 //! A text that begins with `=` is an expression. Its value is read in its place: a number, `"0.12 m"`, `"(0, 0, 0.12) m"`. Doubles
 //! are written so that the same double is read again; a parameter that is a plain quantity is read as it is written.
 
-// A problem is large because it says much; it is made once.
-#![allow(clippy::result_large_err)]
-
 use super::manuscript::Manuscript;
 use super::names::Names;
 use super::tree::{Node, Shape};
