@@ -31,24 +31,41 @@ fn document(text: &str) -> Document {
         .unwrap_or_else(|e| panic!("{e}\n{:#?}\n{text}", e.problems()))
 }
 
+/// The lenses that are made of real surfaces, with their systems.
+fn real_lenses() -> Vec<(PathBuf, Prescription, lens::Written)> {
+    let read = |file: PathBuf| {
+        let prescription = import::read(&file).expect("a lens");
+        let written = lens::system(&prescription).ok()?;
+        Some((file, prescription, written))
+    };
+    files().into_iter().filter_map(read).collect()
+}
+
 #[test]
-fn all_fifteen_lenses_become_systems() {
+fn fourteen_of_fifteen_lenses_become_systems_and_one_is_refused_with_the_reason() {
     let files = files();
     assert_eq!(files.len(), 15);
+    let mut refused = Vec::new();
     for file in files {
         let prescription = import::read(&file).expect("a lens");
-        let written = lens::system(&prescription).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let written = match lens::system(&prescription) {
+            Ok(written) => written,
+            Err(problem) => {
+                assert!(problem.message.contains("ideal thin lens"), "{}: {problem}", file.display());
+                refused.push(file.file_name().expect("a name").to_string_lossy().into_owned());
+                continue;
+            }
+        };
         compile(&document(&written.text))
             .unwrap_or_else(|e| panic!("{}: {e}\n{:#?}\n{}", file.display(), e.problems(), written.text));
     }
+    assert_eq!(refused, ["petzval.roa"]);
 }
 
 /// A ray of the design through the compiled scene lands where the design program's own trace puts it.
 #[test]
 fn rays_through_the_system_end_where_those_of_the_file_do() {
-    for file in files() {
-        let prescription = import::read(&file).expect("a lens");
-        let written = lens::system(&prescription).expect("a system");
+    for (file, prescription, written) in real_lenses() {
         let text = written.text.replace(
             "run: (rays: 300_000, seed: 1)",
             "run: (rays: 32, batch: 1, splits: 40, roulette: (below: 0.02, survive: 0.01))",
@@ -101,9 +118,7 @@ fn axis(prescription: &Prescription) -> FieldPoint {
 #[test]
 fn check_gives_the_focal_lengths_of_the_files() {
     let mut centred = 0;
-    for file in files() {
-        let prescription = import::read(&file).expect("a lens");
-        let written = lens::system(&prescription).expect("a system");
+    for (file, prescription, written) in real_lenses() {
         let one = prescription.wavelength();
         let single = Prescription { wavelengths: vec![(one, 1.0)], primary: 0, ..prescription.clone() };
         let text = lens::system(&single).expect("a system").text;

@@ -310,9 +310,11 @@ impl Query<'_> {
                 parallel && gap <= tolerance + self.bvh.tolerance(c.number)
             };
             for other in others.iter().filter(coincides).map(hit).take(MOST_COINCIDENT - 1) {
-                // An object cannot be met twice in the same sense without being left in between: that is another place.
+                // An object cannot be met twice in the same sense without being left in between, and a curved face that is
+                // met twice is met in two places.
                 let last = hits.iter().rfind(|met: &&Hit| met.object == other.object);
-                if last.is_none_or(|met| met.front != other.front) {
+                let itself = hits.iter().any(|met| met.triangle == other.triangle);
+                if !itself && last.is_none_or(|met| met.front != other.front) {
                     hits.push(other);
                 }
             }

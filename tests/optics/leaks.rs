@@ -11,7 +11,8 @@ use straylight::geometry::Ray;
 use straylight::math::{Rng, sampling};
 use straylight::system::compile::Compiled;
 
-/// Rays from a sphere around the lens: half of them at points within 1e-9 .. 1 mm of its rims, half anywhere at it.
+/// Rays from a sphere around the lens: half of them at points within 1e-9 .. 1 mm of its
+/// rims, the others anywhere at it, and some along its edge.
 fn rays(lens: &Singlet, count: u64, seed: u64) -> Vec<Ray> {
     let ray = |i: u64| {
         let mut rng = Rng::new(seed, i, 0);
@@ -21,6 +22,15 @@ fn rays(lens: &Singlet, count: u64, seed: u64) -> Vec<Ray> {
         let spread = if i.is_multiple_of(2) { 10f64.powf(-9.0 * rng.uniform()) } else { lens.half };
         let target = rim + spread * sampling::sphere(rng.pair());
         let origin = 60.0 * sampling::sphere(rng.pair());
+        if i.is_multiple_of(100) {
+            // Along the edge: entered and left within roundings.
+            let inside = 1.0 - 10f64.powf(-16.0 + 13.0 * rng.uniform());
+            let radial = DVec2::from_angle(angle);
+            let slope = rng.uniform() - 0.5;
+            let towards = radial.perp().extend(slope).normalize();
+            let middle = (lens.half * inside * radial).extend(0.5 * (lens.sag(0, lens.half) + lens.sag(1, lens.half)));
+            return Ray { origin: 1e-3 * (middle - 50.0 * towards), direction: towards };
+        }
         Ray { origin: 1e-3 * origin, direction: (target - origin).normalize() }
     };
     (0..count).map(ray).collect()

@@ -244,3 +244,47 @@ fn a_shape_that_the_mesh_does_not_have_is_refused_with_the_distance() {
     let text = format!("{:?}", error.problems());
     assert!(text.contains("from this shape") && text.contains("surfaces[1].exact"), "{text}");
 }
+
+/// A coarse mesh and a fine one with exact surfaces and circular rims, and the prescription: the same map, pixel by pixel.
+#[test]
+fn coarse_and_fine_meshes_and_the_prescription_give_one_map() {
+    let lens = BICONVEX;
+    let screen = "\"fpa\": (body: Aperture(diameter: \"0 mm\", outer: \"40 mm\"), at: \"(0, 0, 38) mm\"),";
+    let lit = |sections: String, seed: u64| {
+        sections
+            .replace("extent: Point, at: \"(0, 0, -1000) mm\",", "extent: Disk(radius: \"11 mm\"), at: \"(0, 0, -20) mm\",")
+            .replace("direction: \"(0, 0, 1)\"", "direction: \"(0.05, 0.02, 1)\"")
+            .replace(crate::lab::CERTAIN, &format!("run: (rays: 60000, seed: {seed}),"))
+            .replace(
+                "default:",
+                "detectors: { \"fpa\": (on: Node(\"fpa\"), quantity: Irradiance, pixels: (16, 16), side: Front) }, default:",
+            )
+    };
+    let rim = format!(", semi_diameter: \"{:?} mm\"", lens.half);
+    let meshed = |rings: usize, sectors: usize, seed: u64| {
+        let sections = lens.sections(&lens.exact(&rim), 1.5168).replacen(
+            "geometry:",
+            &format!("elements: {{ {screen} }}, geometry:"),
+            1,
+        );
+        let gltf = Model::new().add("lens", lens.mesh(rings, sectors)).gltf();
+        crate::lab::traced(&system(&lit(sections, seed), &gltf))
+    };
+    let prescribed = crate::lab::traced(&system(&lit(around(&(lens.element() + screen), 1.5168), 1), ""));
+    for results in [meshed(2, 68, 2), meshed(100, 500, 3)] {
+        let maps = [&prescribed, &results]
+            .map(|results| results.maps.iter().find(|map| map.detector == "fpa").expect("a map"));
+        let (mut chi, mut pixels) = (0.0, 0);
+        for i in (0..maps[0].mean.len()).filter(|&i| maps.iter().all(|map| map.rays[i] >= 30)) {
+            let variance = maps[0].error[i].powi(2) + maps[1].error[i].powi(2);
+            chi += (maps[0].mean[i] - maps[1].mean[i]).powi(2) / variance;
+            pixels += 1;
+        }
+        println!("{pixels} pixels, chi-squared {chi:.1}");
+        // 4.5 sigma of chi-squared.
+        let n = f64::from(pixels);
+        assert!(pixels > 30 && (chi - n).abs() < 4.5 * (2.0 * n).sqrt(), "{chi} over {pixels} pixels");
+        let [a, b] = [&prescribed, &results].map(|results| &results.detectors["fpa"].flux_w);
+        assert!((a.mean - b.mean).abs() < 4.0 * a.error.hypot(b.error), "{a:?} {b:?}");
+    }
+}

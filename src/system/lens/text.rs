@@ -55,9 +55,6 @@ pub fn form(profile: &Profile) -> Result<String, Problem> {
             let rotation = if turned.is_infinite() { String::new() } else { format!(", rotation: {}", mm(*turned)) };
             format!("Toroid({}{}{}{rotation})", radius(curve.curvature), conic(curve.conic), terms(&curve.terms))
         }
-        Profile::Thin { .. } => {
-            return Err(Problem::error("an ideal thin lens: it has no surface and breaks etendue")
-                .expecting("a lens of real surfaces"));
-        }
+        Profile::Thin { .. } => return Err(Problem::error("an ideal thin lens has no form")),
     })
 }

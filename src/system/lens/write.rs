@@ -26,6 +26,11 @@ const MARGIN: f64 = 1.05;
 /// The system of a lens: elements, stop, glasses, fields as sources, the image plane as detector. Light comes from -z; the origin
 /// is the vertex of the first surface.
 pub fn system(lens: &Prescription) -> Result<Written, Problem> {
+    if let Some(thin) = lens.surfaces.iter().position(|surface| matches!(surface.profile, Profile::Thin { .. })) {
+        let problem =
+            Problem::error(format!("surface {thin} is an ideal thin lens: it has no surface, and breaks etendue"));
+        return Err(problem.expecting("real surfaces"));
+    }
     let optics = first_order(lens, &index)?;
     let used = real::semi_diameters(lens, &index)?;
     let radius = |i: usize| lens.surfaces[i].semi_diameter.filter(|r| *r > 0.0).unwrap_or(MARGIN * used[i]);
