@@ -106,3 +106,25 @@ fn no_ray_is_lost_at_any_rim_in_full() {
         watertight(name, &compiled, &lens, 700_000);
     }
 }
+
+/// A curved detector counts all that arrives, on its exact face and on the facets and strips around it.
+#[test]
+fn a_curved_exact_face_is_one_bin_of_its_detector_and_misses_nothing() {
+    let lens = BICONVEX;
+    let watched = |entries: &str| {
+        let sections = lens
+            .sections(entries, 1.5)
+            .replace(
+                "extent: Point, at: \"(0, 0, -1000) mm\",",
+                "extent: Disk(radius: \"12 mm\"), at: \"(0, 0, -20) mm\",",
+            )
+            .replace("medium: \"glass\", specular: Fresnel", "specular: Absorb")
+            .replace(crate::lab::CERTAIN, "run: (rays: 20000, seed: 1),")
+            .replace("default:", "detectors: { \"all\": (on: Node(\"lens\"), quantity: Irradiance) }, default:");
+        let model = Model::new().add("lens", lens.mesh(3, 24));
+        crate::lab::traced(&system(&sections, &model.gltf()))
+    };
+    let results = watched(&lens.exact(""));
+    let (seen, taken) = (&results.detectors["all"].flux_w, &results.ledger_w.absorbed);
+    assert!((seen.mean / taken.mean - 1.0).abs() < 1e-12 && seen.mean > 0.5, "{seen:?} {taken:?}");
+}

@@ -30,6 +30,10 @@ impl Shape {
         Shape::Conic(Conic { curvature: 0.0, conic: 0.0 })
     }
 
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Shape::Conic(conic) if conic.curvature == 0.0)
+    }
+
     /// A height over the disc of radius `reach` (m).
     pub fn sag(sag: Sag, reach: f64) -> Shape {
         let bend = 2.0 * steepest_bend(&sag, reach);

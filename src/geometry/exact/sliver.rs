@@ -38,6 +38,11 @@ impl Sliver {
         Sliver { start: a, along, lift, normal, shape, bounds: [low, high] }
     }
 
+    /// About two thirds of chord times sagitta, m2.
+    pub fn area(&self) -> f64 {
+        2.0 / 3.0 * self.along.length() * self.shape.level(self.middle()).abs()
+    }
+
     pub(super) fn meet(&self, o: DVec3, d: DVec3) -> Option<Touch> {
         let t = (self.start - o).dot(self.normal) / d.dot(self.normal);
         if !t.is_finite() {

@@ -10,6 +10,7 @@ use crate::system::elements;
 use crate::system::gltf::{self, GltfFile, Node};
 use crate::system::select;
 use glam::{DAffine3, DMat3, DVec3};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Every node with triangles. Triangles are numbered through, node after node.
@@ -189,6 +190,18 @@ impl Assembly {
             let nearest = at.clamp(low, high);
             (nearest - at).length() > reach
         })
+    }
+
+    /// Number and area (m2) of everything that light can meet on a node: the triangles that are met, then the exact faces.
+    pub fn met_on(&self, node: usize) -> Vec<(u32, f64)> {
+        let exact = &self.exact[node];
+        let replaced: BTreeSet<u32> = exact.replaced.iter().map(|t| self.first[node] + t).collect();
+        let mesh = &self.nodes[node].mesh;
+        let triangles = (0..mesh.triangles.len()).map(|i| (self.first[node] + i as u32, mesh.area(i)));
+        let before: usize = self.exact[..node].iter().map(|exact| exact.faces.len()).sum();
+        let faces = exact.areas.iter().enumerate();
+        let faces = faces.map(|(i, area)| ((self.part_of.len() + before + i) as u32, *area));
+        triangles.filter(|(id, _)| !replaced.contains(id)).chain(faces).collect()
     }
 
     /// The part of every triangle, then of every exact face, as the scene numbers them.

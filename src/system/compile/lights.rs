@@ -100,6 +100,14 @@ fn extent(
                 shop.nothing_matches(&format!("{path}.extent"), name, &assembly.names());
                 return None;
             }
+            let curved = |node: &&usize| assembly.nodes[**node].exact.iter().any(|declared| !declared.shape.is_flat());
+            if let Some(&node) = nodes.iter().find(curved) {
+                let problem = format!(
+                    "light starts from the facets of `{}`, not from its exact surface",
+                    assembly.nodes[node].name
+                );
+                shop.fault(&format!("{path}.extent"), Problem::warning(problem));
+            }
             mesh(assembly, &nodes, *side, beam).or_else(|| {
                 shop.fault(&format!("{path}.extent"), Problem::error(format!("no face of `{name}` can emit that way")));
                 None

@@ -105,7 +105,7 @@ fn node_grid(assembly: &Assembly, nodes: &[usize], pixels: Option<(u32, u32)>) -
     let along = if normal.cross(DVec3::X).length() < 1e-6 { DVec3::Y } else { DVec3::X };
     let frame = Frame::from_z_x(normal, along);
     if !flat {
-        let bins = triangles.iter().map(|(id, corners)| (*id, 0.5 * doubled(corners).length())).collect();
+        let bins = nodes.iter().flat_map(|&node| assembly.met_on(node)).collect();
         return (frame, Some(Box::new(Triangles::new(bins, centre))));
     }
     let plane = |v: DVec3| DVec2::new(frame.x.dot(v - centre), frame.y.dot(v - centre));

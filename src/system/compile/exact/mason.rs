@@ -134,9 +134,9 @@ impl Mason<'_> {
                 Shape::Cone { .. } => Sliver::new(*chord, lift(Sweep::Azimuth, *chord), shape.clone()),
                 _ => Sliver::new(*chord, DVec3::Z, shape.clone()),
             };
+            built.areas.push(sliver.area());
             built.faces.push(Face { at, frame, what: Patch::Sliver(sliver) });
             built.parts.push(self.part_of[beyond as usize]);
-            built.areas.push(0.0);
         }
     }
 }

@@ -23,7 +23,7 @@ use std::collections::HashSet;
 pub struct NodeFaces {
     pub faces: Vec<Face>,
     pub parts: Vec<u32>,
-    /// Area of the triangles that each stands for, m2 (0 for slivers).
+    /// Area of the triangles that each stands for, m2; that of a sliver itself.
     pub areas: Vec<f64>,
     pub replaced: Vec<u32>,
 }
