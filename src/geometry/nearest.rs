@@ -208,7 +208,9 @@ impl Query<'_> {
             for touch in self.bvh.faces[face as usize].meet(self.ray) {
                 if touch.distance <= found.limit {
                     let Touch { distance, point, normal, front } = touch;
-                    self.consider(number, Plane { normal, point, distance, front }, Place::At(point), found);
+                    // One that was left together with others may still lie ahead, by what they may be apart.
+                    let apart = if self.left.has(number) { 2.0 * self.bvh.tolerance } else { 0.0 };
+                    self.consider(number, Plane { normal, point, distance, front }, Place::At(point), apart, found);
                 }
             }
         }
@@ -253,16 +255,14 @@ impl Query<'_> {
         if meeting.distance <= found.limit {
             let Meeting { distance, weights, front } = meeting;
             let plane = Plane { normal: triangle.normal(), point: triangle.vertices[0], distance, front };
-            self.consider(number, plane, Place::Between(vertices, weights), found);
+            self.consider(number, plane, Place::Between(vertices, weights), 0.0, found);
         }
     }
 
-    fn consider(&self, number: u32, plane: Plane, place: Place, found: &mut Found) {
+    /// `apart`: how far beyond rounding it may still be what the ray stands on, m.
+    fn consider(&self, number: u32, plane: Plane, place: Place, apart: f64, found: &mut Found) {
         let Plane { normal, distance, front, .. } = plane;
         let cosine = normal.dot(self.ray.direction).abs();
-        // An exact face that was left together with others may still lie ahead, by what they may be apart.
-        let met = self.left.has(number);
-        let apart = if met { 2.0 * self.bvh.tolerance } else { 0.0 };
         let near = distance.abs() * cosine <= self.delta + apart;
         let foot = if near { self.left.on(number, self.bvh.object(number)) } else { None };
         let ahead = match foot {
