@@ -7,8 +7,11 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
 use solids::{bvh, icosphere, isotropic, torus};
 use std::hint::black_box;
+use std::path::Path;
 use straylight::geometry::{Bvh, Left, Ray};
-use straylight::math::Rng;
+use straylight::math::{Rng, sampling};
+use straylight::system::compile::{compile, geometry};
+use straylight::system::document::Document;
 
 const RAYS: usize = 20_000;
 
@@ -46,5 +49,48 @@ fn traversal(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, traversal);
+/// A biconvex lens 20 mm wide: as an element, whose surfaces are exact, or as the facets that `export` makes of it.
+fn lens(folder: &Path, body: &str) -> Document {
+    let text = format!(
+        "System({body} media: {{ \"glass\": Constant(n: 1.5) }}, surfaces: [(on: Node(\"*\"), medium: \"glass\", specular: Fresnel)],
+        sources: {{ \"lamp\": (flux: \"1 W\", extent: Point, at: \"(0, 0, -1) m\", angular: Collimated(direction: \"(0, 0, 1)\"),
+        spectrum: Line(\"550 nm\")) }}, detectors: {{}}, run: (rays: 1000, seed: 1))"
+    );
+    let path = folder.join("system.ron");
+    std::fs::write(&path, text).expect("written");
+    Document::read(&path).expect("a system")
+}
+
+/// The same rays at the same lens, exact and faceted: what a hit on an exact surface costs beside one on a facet.
+fn exact(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let element = lens(
+        folder.path(),
+        "geometry: [], elements: { \"lens\": (body: Lens(surfaces: [(form: Sphere(radius: \"50 mm\")), (form: Sphere(radius: \"-40 mm\"))],
+         thickness: [\"6 mm\"], media: [\"glass\"], diameter: \"20 mm\")) },",
+    );
+    let placed = geometry(&element).expect("its mesh");
+    std::fs::write(folder.path().join("lens.glb"), placed.glb()).expect("written");
+    let exact = compile(&element).expect("the element compiles").scene;
+    let facets = compile(&lens(folder.path(), "geometry: [(file: \"lens.glb\")],")).expect("the mesh compiles").scene;
+    let mut rng = Rng::new(1, 0, 0);
+    let queries: Vec<(Ray, Left)> = (0..RAYS)
+        .map(|_| {
+            let origin = 0.06 * sampling::sphere(rng.pair());
+            let target = DVec3::new(0.0, 0.0, 0.003) + 0.008 * sampling::sphere(rng.pair()) * DVec3::new(1.0, 1.0, 0.2);
+            (Ray { origin, direction: (target - origin).normalize() }, Left::nothing())
+        })
+        .collect();
+    let mut group = criterion.benchmark_group("a lens");
+    group.throughput(Throughput::Elements(RAYS as u64)).sample_size(20);
+    for (name, scene) in [("exact faces".into(), &exact), (format!("{} facets", facets.geometry.len()), &facets)] {
+        let shift = scene.shift;
+        let moved: Vec<(Ray, Left)> =
+            queries.iter().map(|(ray, left)| (Ray { origin: ray.origin - shift, ..*ray }, left.clone())).collect();
+        group.bench_function(name, |bench| bench.iter(|| black_box(ask(&scene.geometry, &moved))));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, traversal, exact);
 criterion_main!(benches);

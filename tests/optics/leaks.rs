@@ -9,7 +9,9 @@ use glam::DVec2;
 use std::f64::consts::TAU;
 use straylight::geometry::Ray;
 use straylight::math::{Rng, sampling};
-use straylight::system::compile::Compiled;
+use straylight::settings::{Roulette, Settings};
+use straylight::system::compile::{Compiled, compile};
+use straylight::system::document::Document;
 
 /// Rays from a sphere around the lens: half of them at points within 1e-9 .. 1 mm of its
 /// rims, the others anywhere at it, and some along its edge.
@@ -104,6 +106,28 @@ fn no_ray_is_lost_at_any_rim() {
 fn no_ray_is_lost_at_any_rim_in_full() {
     for (name, compiled, lens) in bodies() {
         watertight(name, &compiled, &lens, 700_000);
+    }
+}
+
+/// Whole runs through the shipped lens stacks, one branch drawn at every surface.
+#[test]
+#[ignore = "10^8 rays, an hour: cargo test --release --test optics -- --ignored stacks"]
+fn no_ray_is_lost_in_the_lens_stacks() {
+    for (name, rays) in [("triplet", 40e6), ("double_gauss", 40e6), ("questar", 20e6)] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("systems").join(name).join("system.ron");
+        let mut compiled = compile(&Document::read(&path).expect("it ships with the project")).expect("it compiles");
+        compiled.settings = Settings {
+            rays: rays as u64,
+            paths: 0,
+            splits: 0,
+            scatter_splits: 0,
+            roulette: Roulette { below: 1e-3, survive: 0.1 },
+            until: None,
+            ..compiled.settings
+        };
+        let results = crate::lab::traced(&compiled);
+        println!("{name}: {} rays, {:.3e} W lost", results.rays, results.ledger_w.lost.mean);
+        assert_eq!(results.ledger_w.lost.mean, 0.0, "{name}");
     }
 }
 

@@ -114,6 +114,52 @@ fn rad_06_basic_radiance_through_a_sphere() {
     close(direct * n * n / determinant(&j), number(&value, "L_inside_no_loss") * direct, 1e-6, "RAD-06 n^2 L");
 }
 
+/// A slab of plane faces, straight and at 45 degrees: n^2 T L inside, T^2 L behind.
+#[test]
+fn rad_06_basic_radiance_through_a_slab() {
+    for value in Case::load("RAD-06").values().into_iter().filter(|v| v["kind"] == "slab") {
+        let (n, angle) = (number(&value, "n"), number(&value, "theta").to_radians());
+        let compiled = system(&around(&singlet("Plane", "Plane", 10.0, 80.0), n), "");
+        let direction = DVec3::new(0.0, angle.sin(), angle.cos());
+        let trace = shot(&compiled, &[Ray { origin: -0.05 * direction, direction }]);
+        let inside = trace.at(&compiled, "lens.back")[0].flux;
+        close(n * n * inside, number(&value, "L_inside_single_pass"), 1e-9, "RAD-06 slab, inside");
+        let direct = trace.seen.escaped.iter().map(|(_, flux)| *flux).fold(0.0, f64::max);
+        close(direct, number(&value, "L_exit_with_TsTp_avg"), 1e-9, "RAD-06 slab, behind");
+    }
+}
+
+/// A wedge turns the beam and makes it wider or narrower as the cosines say; its radiance stays T^2 L.
+#[test]
+fn rad_06_basic_radiance_through_a_wedge() {
+    let case = Case::load("RAD-06");
+    let value = case.values().into_iter().find(|v| v["kind"] == "wedge").expect("a wedge");
+    let (apex, angle) = (number(&value, "apex").to_radians(), number(&value, "theta").to_radians());
+    let element = format!(
+        "\"wedge\": (body: Prism(corners: [(\"0 mm\", \"0 mm\"), (\"-40 mm\", \"0 mm\"), (\"-40 mm\", \"{:?} mm\")], \
+         length: \"12 mm\", medium: \"glass\")),",
+        40.0 * apex.tan()
+    );
+    let compiled = system(&around(&element, number(&value, "n")), "");
+    let direction = DVec3::new(0.0, angle.sin(), angle.cos());
+    let across = DVec3::new(0.0, angle.cos(), -angle.sin());
+    let sent = |offset: f64| {
+        let origin = DVec3::new(0.0, -0.02, 0.0) - 0.05 * direction + offset * across;
+        let out = shot(&compiled, &[Ray { origin, direction }]).seen.escaped;
+        out.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).expect("it passes")
+    };
+    let (ray, flux) = sent(0.0);
+    close(flux, number(&value, "L_exit"), 1e-9, "RAD-06 wedge, behind");
+    let deviation = ray.direction.angle_between(direction).to_degrees();
+    close(deviation, number(&value, "deviation_deg"), 1e-9, "RAD-06 wedge, deviation");
+    let normal = DVec3::new(0.0, apex.sin(), apex.cos());
+    let exit = ray.direction.angle_between(normal).to_degrees();
+    close(exit, number(&value, "theta_exit_deg").abs(), 1e-9, "RAD-06 wedge, exit angle");
+    // Two rays 1 mm apart before; behind, their distance across the beam.
+    let apart = (sent(0.001).0.origin - ray.origin).cross(ray.direction).length();
+    close(apart / 0.001, number(&value, "anamorphic_beam_compression"), 1e-9, "RAD-06 wedge, width");
+}
+
 /// The immersed detector sees n^2 T of the hemisphere's radiance: by reversing rays from it, exact surface and all.
 #[test]
 fn rad_07_hemispherical_immersion_lens() {
