@@ -83,38 +83,41 @@ impl Solids {
     }
 }
 
-/// What a surface did to the light.
+/// What happened to the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Event {
     Reflect = 0,
     Transmit = 1,
     Scatter = 2,
+    /// Scattered inside a medium.
+    Bulk = 3,
 }
 
 impl Event {
     /// One letter, as path tables write it.
     pub fn letter(self) -> char {
-        ['R', 'T', 'S'][self as usize]
+        ['R', 'T', 'S', 'V'][self as usize]
     }
 }
 
-/// A part and what it did, in one word.
+/// A part, or for [`Event::Bulk`] a medium, and what it did, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Step(u32);
 
 impl Step {
-    /// What part `part` (below 2^30) did.
-    pub fn new(part: u32, event: Event) -> Step {
-        Step(part << 2 | event as u32)
+    /// What part or medium `number` (below 2^30) did.
+    pub fn new(number: u32, event: Event) -> Step {
+        Step(number << 2 | event as u32)
     }
 
-    pub fn part(self) -> u32 {
+    /// Index of the part or medium.
+    pub fn number(self) -> u32 {
         self.0 >> 2
     }
 
     pub fn event(self) -> Event {
-        [Event::Reflect, Event::Transmit, Event::Scatter, Event::Scatter][(self.0 & 3) as usize]
+        [Event::Reflect, Event::Transmit, Event::Scatter, Event::Bulk][(self.0 & 3) as usize]
     }
 }
 
@@ -130,7 +133,7 @@ pub struct Ancestry {
     pub history: u64,
     /// Address of its branch of the event tree (see `Rng`).
     pub branch: u64,
-    /// Surface events so far.
+    /// Events so far.
     pub events: u32,
     /// Hash of (source, steps so far): names the path.
     pub key: u64,
@@ -143,7 +146,7 @@ pub struct Ancestry {
     pub reflections: u32,
     /// True once an optical element (mirror or interface) was met.
     pub optics: bool,
-    pub last_scatter: Option<u32>,
+    pub last_scatter: Option<Step>,
     /// Optical path since the source, m.
     pub optical_path: f64,
 }
@@ -168,9 +171,9 @@ impl Ancestry {
     }
 
     /// Takes one more step. `intended`: this surface is there to do just that (a mirror reflects).
-    pub fn step(&mut self, part: u32, event: Event, intended: bool) {
+    pub fn step(&mut self, number: u32, event: Event, intended: bool) {
         self.events += 1;
-        let step = Step::new(part, event);
+        let step = Step::new(number, event);
         self.key = mix(self.key.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (step.0 as u64 + 1));
         // A longer path has no row of its own: its key is never admitted, so its tail need not be spelled.
         let _ = self.steps.try_push(step);
@@ -182,9 +185,9 @@ impl Ancestry {
                 self.optics = true;
             }
             Event::Transmit => self.optics = true,
-            Event::Scatter => {
+            Event::Scatter | Event::Bulk => {
                 self.scatters = self.scatters.saturating_add(1);
-                self.last_scatter = Some(part);
+                self.last_scatter = Some(step);
             }
         }
     }

@@ -127,6 +127,8 @@ struct Log {
 
 enum Seen {
     Event(Sight),
+    /// Scattered in a medium: on the way it came, flux.
+    Bulk(Ray, u16, f64),
     Escape(Ray, f64),
 }
 
@@ -149,6 +151,10 @@ impl Watch for Log {
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
         self.push(|| Seen::Event(sight()));
+    }
+
+    fn scattered(&mut self, ray: &Ray, medium: u16, flux: f64) {
+        self.push(|| Seen::Bulk(*ray, medium, flux));
     }
 
     fn escaped(&mut self, ray: Ray, flux: f64) {
@@ -178,6 +184,15 @@ fn table(log: &Log, scene: &Scene) -> String {
         let way = if way.is_empty() { "-".into() } else { way.clone() };
         match seen {
             Seen::Event(sight) => table.row(event(sight, way, scene)),
+            Seen::Bulk(ray, medium, flux) => {
+                let mut cells = [const { String::new() }; 14];
+                cells[1] = way;
+                cells[2] = millimetres(ray.origin + scene.shift);
+                cells[3] = "is scattered".into();
+                cells[5] = scene.media[*medium as usize].label.clone();
+                cells[7] = digits(*flux, 5);
+                table.row(cells);
+            }
             Seen::Escape(ray, flux) => {
                 let mut cells = [const { String::new() }; 14];
                 cells[1] = way;

@@ -2,12 +2,14 @@
 //!
 //! Models: [`Constant`], [`Tabulated`], [`Air`] and the formulas of [`dispersion`]. A [`Catalogued`] medium puts them together;
 //! it is read from a page of refractiveindex.info ([`page`]) or an AGF catalogue ([`agf`]), or built in ([`catalog`]).
+//! In a [`Turbid`] one something scatters ([`bulk`]).
 
 // A problem of an input is built once per run.
 #![allow(clippy::result_large_err)]
 
 pub mod agf;
 pub mod air;
+pub mod bulk;
 pub mod catalog;
 pub mod catalogued;
 pub mod constant;
@@ -15,6 +17,7 @@ pub mod dispersion;
 pub mod page;
 pub mod remembered;
 pub mod tabulated;
+pub mod turbid;
 
 use num_complex::Complex64;
 
@@ -24,6 +27,7 @@ pub use constant::{Constant, Loss};
 pub use dispersion::Sellmeier;
 pub use remembered::Remembered;
 pub use tabulated::Tabulated;
+pub use turbid::Turbid;
 
 /// Micrometres, which catalogues count in, per metre; divided by it, 0.55 um is the double nearest to 550e-9.
 const MICROMETRES: f64 = 1e6;
@@ -41,6 +45,11 @@ pub trait Medium: Send + Sync + std::fmt::Debug {
 
     /// Vacuum wavelengths (m) of a table of the absorption alone, whose end values are held beyond; `None`: there is none.
     fn absorption_range(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// What scatters in it.
+    fn bulk(&self) -> Option<&dyn bulk::Bulk> {
         None
     }
 

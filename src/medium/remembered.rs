@@ -3,6 +3,7 @@
 //! The same bits as without: the index is looked up at equal wavelengths only, else asked for.
 
 use super::Medium;
+use super::bulk::Bulk;
 use num_complex::Complex64;
 
 /// A medium and its index at a few wavelengths.
@@ -33,6 +34,10 @@ impl Medium for Remembered {
 
     fn absorption_range(&self) -> Option<[f64; 2]> {
         self.medium.absorption_range()
+    }
+
+    fn bulk(&self) -> Option<&dyn Bulk> {
+        self.medium.bulk()
     }
 
     fn origin(&self) -> Option<&str> {

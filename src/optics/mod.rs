@@ -3,6 +3,7 @@
 pub mod amplitudes;
 pub mod fresnel;
 pub mod incidence;
+pub mod mie;
 pub mod refraction;
 pub mod stokes;
 

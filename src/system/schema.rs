@@ -83,6 +83,7 @@ mod tests {
         options::<Form>();
         options::<Relative>();
         options::<Medium>();
+        options::<Bulk>();
         options::<Coating>();
         options::<Specular>();
         options::<Scatter>();

@@ -205,7 +205,7 @@ fn leave<const V: usize>(
     let local = match way {
         Event::Reflect => Some(refraction::reflect(wi)),
         Event::Transmit => meeting.refracted,
-        Event::Scatter => return scatter(packet, crossing, meeting, bill, factor),
+        Event::Scatter | Event::Bulk => return scatter(packet, crossing, meeting, bill, factor),
     };
     let Some(local) = local else { return false };
     let light = if way == Event::Reflect { &bill.reflected } else { &bill.transmitted };

@@ -1,6 +1,7 @@
 //! Transport: batches of source rays over all cores, folded in a fixed order.
 
 pub mod book;
+mod bulk;
 mod film;
 mod interaction;
 pub mod paths;

@@ -15,7 +15,7 @@ pub struct Row {
     pub class: Class,
     pub ghosts: u16,
     pub scatters: u16,
-    pub last_scatter: Option<u32>,
+    pub last_scatter: Option<Step>,
 }
 
 /// The rows, found by detector and path key.

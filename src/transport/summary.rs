@@ -3,7 +3,7 @@
 use super::Counts;
 use super::book::coarse_cell;
 use crate::math::statistics::student95;
-use crate::packet::{Class, Step};
+use crate::packet::{Class, Event, Step};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
@@ -230,9 +230,12 @@ impl<const V: usize> Teller<'_, V> {
         let flux_w = self.estimate(layout.row(index));
         let cells = layout.row_cells(index).zip(areas).filter(|(_, area)| **area > 0.0);
         let peak = cells.map(|(slot, area)| self.estimate(slot).mean / area).fold(0.0, f64::max);
-        let label = |part: u32| self.scene.parts[part as usize].label.as_str();
+        let label = |step: &Step| match step.event() {
+            Event::Bulk => self.scene.media[step.number() as usize].label.as_str(),
+            _ => self.scene.parts[step.number() as usize].label.as_str(),
+        };
         let source = self.scene.sources[row.source].label.clone();
-        let step = |s: &Step| format!("{}:{}", label(s.part()), s.event().letter());
+        let step = |s: &Step| format!("{}:{}", label(s), s.event().letter());
         let names = std::iter::once(source.clone()).chain(row.steps.iter().map(step));
         Some(PathResult {
             detector: self.scene.detectors[row.detector].label.clone(),
@@ -244,7 +247,7 @@ impl<const V: usize> Teller<'_, V> {
             percent: 100.0 * flux_w.mean / total,
             ghost_order: row.ghosts as u32,
             scatter_order: row.scatters as u32,
-            last_scatter: row.last_scatter.map_or(String::new(), |part| label(part).into()),
+            last_scatter: row.last_scatter.map_or(String::new(), |step| label(&step).into()),
             optical_path_m: self.estimate(layout.row_path(index)).mean / flux_w.mean,
             peak_w_m2: peak,
         })

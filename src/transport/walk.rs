@@ -1,6 +1,7 @@
 //! One source ray from birth to the last of its branches: emit, fly, arrive, interact.
 
 use super::book::Book;
+use super::bulk;
 use super::film;
 use super::interaction::interact;
 use super::watch::Watch;
@@ -14,6 +15,7 @@ use crate::scene::{PartKind, Scene};
 use crate::settings::Settings;
 use crate::source::Birth;
 use crate::tally::layout::{Cut, Loss};
+use glam::DVec3;
 
 /// Everything a history needs.
 pub struct Walk<'a, const V: usize, W: Watch> {
@@ -57,6 +59,14 @@ pub fn quotas(scene: &Scene, batch: u64) -> Vec<Quota> {
             Quota { first: first - count, count }
         })
         .collect()
+}
+
+/// Where a flight ends.
+enum End {
+    Face(Crossing),
+    /// Light is scattered in this medium.
+    Bulk(u16),
+    Escaped,
 }
 
 impl<const V: usize, W: Watch> Walk<'_, V, W> {
@@ -107,18 +117,27 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
     fn follow(&mut self, packet: &mut Packet<V>) {
         while self.survives(packet) {
             self.watch.follows(&packet.ancestry);
-            let crossing = match &packet.film {
-                Some(film) => film.next(),
+            let goes_on = match &packet.film {
+                Some(film) => self.meet(packet, film.next()),
                 None => match self.fly(packet) {
-                    Some(crossing) => film::open(self.scene, packet, crossing),
-                    None => return,
+                    End::Face(crossing) => {
+                        let crossing = film::open(self.scene, packet, crossing);
+                        self.meet(packet, crossing)
+                    }
+                    End::Bulk(medium) => bulk::scatter(self, packet, medium),
+                    End::Escaped => false,
                 },
             };
-            self.arrive(packet, &crossing);
-            if !interact(self, packet, &crossing) {
+            if !goes_on {
                 return;
             }
         }
+    }
+
+    /// A face is reached; true if `packet` itself goes on.
+    fn meet(&mut self, packet: &mut Packet<V>, crossing: Crossing) -> bool {
+        self.arrive(packet, &crossing);
+        interact(self, packet, &crossing)
     }
 
     /// Russian roulette: the mean is unchanged, the ledger books the difference.
@@ -141,8 +160,8 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
         alive
     }
 
-    /// To the next event, through what absorbs and past detectors in free space; `None`: it escaped.
-    fn fly(&mut self, packet: &mut Packet<V>) -> Option<Crossing> {
+    /// To the next event, through what absorbs and past detectors in free space.
+    fn fly(&mut self, packet: &mut Packet<V>) -> End {
         self.book.segments += 1;
         self.watch.flight(&packet.ray, &packet.left);
         let geometry = &self.scene.geometry;
@@ -152,27 +171,40 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
             packet.ray.origin = geometry.inward(packet.ray.origin, &packet.left);
             crossing = geometry.nearest(&packet.ray, &packet.left);
         }
-        self.pass_windows(packet, crossing.as_ref());
+        let medium = self.scene.medium_in(&packet.solids);
+        let most = crossing.as_ref().map_or(f64::INFINITY, |crossing| crossing.distance);
+        if let Some(distance) = bulk::free_path(self.scene, medium, packet, most) {
+            let end = packet.ray.at(distance);
+            self.pass_windows(packet, Some(end));
+            self.pass_medium(packet, medium, distance);
+            packet.ray.origin = end;
+            return End::Bulk(medium);
+        }
+        self.pass_windows(packet, crossing.as_ref().map(|crossing| crossing.point));
         let Some(crossing) = crossing else {
             self.escape(packet);
-            return None;
+            return End::Escaped;
         };
-        let medium = self.scene.medium_in(&packet.solids);
+        self.pass_medium(packet, medium, crossing.distance);
+        End::Face(crossing)
+    }
+
+    /// Absorption and optical path over `distance` (m) in a medium.
+    fn pass_medium(&mut self, packet: &mut Packet<V>, medium: u16, distance: f64) {
         let index = self.scene.index(medium, packet.wavelength);
-        packet.ancestry.optical_path += index.re * crossing.distance;
+        packet.ancestry.optical_path += index.re * distance;
         if index.im > 0.0 {
-            let lost = -(-absorption(index, packet.wavelength) * crossing.distance).exp_m1();
+            let lost = -(-absorption(index, packet.wavelength) * distance).exp_m1();
             self.book.absorbed_in_medium(medium, packet.fluxes().map(|f| f * lost));
             packet.light = packet.light.map(|light| light * (1.0 - lost));
         }
-        Some(crossing)
     }
 
     /// Free-space detectors on the way. The light is recorded as it is at the crossing, absorption up to there included.
-    fn pass_windows(&mut self, packet: &Packet<V>, crossing: Option<&Crossing>) {
+    fn pass_windows(&mut self, packet: &Packet<V>, end: Option<DVec3>) {
         for (detector, watched) in self.scene.detectors.iter().enumerate() {
             let Place::Window(window) = &watched.place else { continue };
-            let Some((front, point)) = window.crossing(&packet.ray, crossing.map(|c| c.point)) else { continue };
+            let Some((front, point)) = window.crossing(&packet.ray, end) else { continue };
             if !watched.side.sees(front) {
                 continue;
             }

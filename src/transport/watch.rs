@@ -39,6 +39,8 @@ pub trait Watch {
     fn follows(&mut self, _ancestry: &Ancestry) {}
     /// A surface event. Called before branches are drawn.
     fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
+    /// A packet of this flux (W) is scattered at the origin of the ray on which it came, in a medium. Called before its way is drawn.
+    fn scattered(&mut self, _ray: &Ray, _medium: u16, _flux: f64) {}
     /// A packet left the scene.
     fn escaped(&mut self, _ray: Ray, _flux: f64) {}
 }

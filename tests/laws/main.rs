@@ -4,6 +4,7 @@
 mod equations;
 mod interfaces;
 mod media;
+mod phases;
 mod reference;
 mod samplers;
 mod scatter;

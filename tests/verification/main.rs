@@ -9,3 +9,4 @@ mod pulls;
 mod radiometry;
 mod slabs;
 mod stray;
+mod volumes;

@@ -12,7 +12,14 @@ const CHANCE: f64 = 1e-3;
 #[test]
 #[ignore = "full size; cargo test --release --test verification -- --ignored"]
 fn pulls_of_all_cases_are_normal() {
-    let cases = [crate::radiometry::CASES, crate::cavities::CASES, crate::stray::CASES, crate::slabs::CASES].concat();
+    let cases = [
+        crate::radiometry::CASES,
+        crate::cavities::CASES,
+        crate::stray::CASES,
+        crate::slabs::CASES,
+        crate::volumes::CASES,
+    ]
+    .concat();
     let checks: Vec<Check> = cases.into_iter().flat_map(|(name, case)| full(name, case)).collect();
     let random = checks.iter().filter(|c| c.independent && c.error > 1e-9 * c.value.abs());
     let pulls: Vec<f64> = random.filter(|c| c.sys < 0.33 * c.error).map(Check::pull).collect();

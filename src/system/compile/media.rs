@@ -3,7 +3,7 @@
 use super::Shop;
 use crate::error::Problem;
 use crate::medium::catalog::Shelf;
-use crate::medium::{self, Medium, Remembered, agf, page};
+use crate::medium::{self, Medium, Remembered, agf, bulk, page};
 use crate::scene::Filling;
 use crate::system::document as written;
 use std::path::Path;
@@ -17,9 +17,10 @@ pub fn media(shop: &mut Shop) -> Vec<Filling> {
     let vacuum = Filling { label: VACUUM.into(), medium: empty() };
     let mut media = vec![vacuum];
     let lines = lines(shop.document);
+    let light = light(shop.document, &lines);
     for (name, written) in shop.document.system.media.iter() {
         // What cannot be read is noted, and the system refused; until then its place is kept.
-        let medium = medium(shop, written, &format!("media[{name:?}]"));
+        let medium = medium(shop, written, &light, &format!("media[{name:?}]"));
         let medium = medium.map_or_else(empty, |medium| Arc::new(Remembered::new(medium, &lines)));
         media.push(Filling { label: name.into(), medium });
     }
@@ -42,12 +43,37 @@ fn lines(document: &written::Document) -> Vec<f64> {
     if lines.len() > MOST { Vec::new() } else { lines }
 }
 
+/// Vacuum wavelengths (m, rising) at which what is costly is worked out: the lines of the sources, or points close together from
+/// the least to the greatest wavelength of all of them.
+fn light(document: &written::Document, lines: &[f64]) -> Vec<f64> {
+    const POINTS: u32 = 48;
+    let band = |spectrum: &written::Spectrum| match spectrum {
+        written::Spectrum::Line(_) => None,
+        written::Spectrum::Lines(shares) if !lines.is_empty() || shares.is_empty() => None,
+        written::Spectrum::Lines(shares) => Some(shares.iter().map(|(wavelength, _)| wavelength.0).collect()),
+        written::Spectrum::Band { from, to } | written::Spectrum::BlackBody { from, to, .. } => {
+            Some(vec![from.0, to.0])
+        }
+        written::Spectrum::Table { wavelength, .. } => Some(wavelength.iter().map(|wavelength| wavelength.0).collect()),
+    };
+    let bands: Vec<f64> =
+        document.system.sources.iter().filter_map(|(_, source)| band(&source.spectrum)).flatten().collect();
+    let from = bands.iter().copied().fold(f64::INFINITY, f64::min);
+    let to = bands.iter().copied().fold(0.0, f64::max);
+    let points = (0..POINTS).map(|i| from + (to - from) * f64::from(i) / f64::from(POINTS - 1));
+    let mut light: Vec<f64> = if bands.is_empty() { Vec::new() } else { points.collect() };
+    light.extend(lines);
+    light.sort_by(f64::total_cmp);
+    light.dedup();
+    light
+}
+
 fn empty() -> Arc<dyn Medium> {
     Arc::new(medium::Constant::transparent(1.0))
 }
 
 /// `None`: what is wrong with it has been noted.
-fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<dyn Medium>> {
+fn medium(shop: &mut Shop, written: &written::Medium, light: &[f64], path: &str) -> Option<Box<dyn Medium>> {
     Some(match written {
         written::Medium::Constant { n, k, absorption } => {
             let loss = match (k, absorption) {
@@ -60,9 +86,12 @@ fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<
             let terms = b.iter().zip(c).map(|(b, c)| (*b, c.0)).collect();
             Box::new(medium::Sellmeier { terms, range: None })
         }
-        written::Medium::Tabulated { wavelength, n, k } => {
+        written::Medium::Tabulated { wavelength, n, k, absorption } => {
             let wavelength: Vec<f64> = wavelength.iter().map(|w| w.0).collect();
-            let k = k.clone().unwrap_or_else(|| vec![0.0; n.len()]);
+            let k = match (k, absorption) {
+                (_, Some(alpha)) => alpha.iter().zip(&wavelength).map(|(a, w)| medium::extinction(a.0, *w)).collect(),
+                (k, None) => k.clone().unwrap_or_else(|| vec![0.0; n.len()]),
+            };
             let table = medium::Tabulated::new(wavelength, n, &k);
             if table.is_none() {
                 shop.fault(path, Problem::error("this table cannot be interpolated"));
@@ -82,6 +111,43 @@ fn medium(shop: &mut Shop, written: &written::Medium, path: &str) -> Option<Box<
             let text = agf::decode(&load(shop, file, path)?);
             let glass = agf::parse(&text, glass, &file.display().to_string());
             Box::new(read(shop, glass, file, path)?.medium)
+        }
+        written::Medium::Turbid { host, scatter } => {
+            let host = medium(shop, host, light, &format!("{path}.host"))?;
+            let bulk = bulk(shop, scatter, host.as_ref(), light, &format!("{path}.scatter"))?;
+            Box::new(medium::Turbid { host, bulk })
+        }
+    })
+}
+
+/// What scatters in a host; `None`: what is wrong with it has been noted.
+fn bulk(
+    shop: &mut Shop,
+    written: &written::Bulk,
+    host: &dyn Medium,
+    light: &[f64],
+    path: &str,
+) -> Option<Box<dyn bulk::Bulk>> {
+    let spectrum = |rows: &written::OverWavelength| bulk::Spectrum::new(&rows.0);
+    Some(match written {
+        written::Bulk::HenyeyGreenstein { coefficient, g } => {
+            Box::new(bulk::HenyeyGreenstein { coefficient: spectrum(coefficient)?, g: *g })
+        }
+        written::Bulk::Rayleigh { coefficient, at } => {
+            Box::new(bulk::Rayleigh { coefficient: coefficient.0, at: at.0 })
+        }
+        written::Bulk::PhaseTable { coefficient, values } => {
+            let mut rows: Vec<(f64, f64)> = values.iter().map(|(angle, value)| (angle.0.cos(), *value)).collect();
+            rows.reverse();
+            let cosines = bulk::Cosines::new(&rows);
+            if cosines.is_none() {
+                shop.fault(path, Problem::error("this phase function cannot be normalised"));
+            }
+            Box::new(bulk::Tabulated { coefficient: spectrum(coefficient)?, cosines: cosines? })
+        }
+        written::Bulk::Spheres { medium: spheres, diameter, fraction } => {
+            let spheres = medium(shop, spheres, light, &format!("{path}.medium"))?;
+            Box::new(bulk::Spheres::new(spheres.as_ref(), host, diameter.0, *fraction, light))
         }
     })
 }

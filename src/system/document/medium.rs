@@ -1,5 +1,6 @@
 //! What fills a solid.
 
+use super::Bulk;
 use crate::medium::air::{ATMOSPHERE, ROOM};
 use crate::system::units::{Absorption, Pressure, Temperature, Wavelength, WavelengthSquared};
 use serde::Deserialize;
@@ -33,6 +34,8 @@ pub enum Medium {
         n: Vec<f64>,
         /// Extinction coefficients, dimensionless, >= 0; one per wavelength, or all 0 if not given.
         k: Option<Vec<f64>>,
+        /// Absorption coefficients 4 pi k / lambda, 1/m, instead of `k`.
+        absorption: Option<Vec<Absorption>>,
     },
     /// Dry air; catalogue glasses are relative to it.
     Air {
@@ -61,6 +64,13 @@ pub enum Medium {
         /// Name of the glass in it.
         glass: String,
     },
+    /// A medium with something in it that scatters.
+    Turbid {
+        /// What it would be without.
+        host: Box<Medium>,
+        /// What scatters.
+        scatter: Bulk,
+    },
 }
 
 impl Medium {
@@ -68,6 +78,10 @@ impl Medium {
     pub fn file(&self) -> Option<&Path> {
         match self {
             Medium::RefractiveIndexInfo { file } | Medium::Agf { file, .. } => Some(file),
+            Medium::Turbid { host, scatter } => host.file().or(match scatter {
+                Bulk::Spheres { medium, .. } => medium.file(),
+                _ => None,
+            }),
             _ => None,
         }
     }

@@ -4,6 +4,7 @@
 //! problems at once, each with line and column. [`Document::span`] finds the place of a path such as
 //! `surfaces[3].scatter` or `sources["sun"].extent`, so that later stages can point into the same text.
 
+mod bulk;
 mod check;
 mod coating;
 mod configure;
@@ -24,6 +25,7 @@ mod source;
 mod surface;
 mod tree;
 
+pub use bulk::{Bulk, OverWavelength};
 pub use coating::{Coating, Specular};
 pub use configure::{About, Change, Replacement};
 pub use detector::{Bins, Detector, Quantity, Receiver};

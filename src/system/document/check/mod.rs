@@ -1,5 +1,6 @@
 //! What serde cannot see: ranges, names, contradictions. Everything is checked and everything wrong is reported.
 
+mod bulk;
 mod light;
 mod optics;
 

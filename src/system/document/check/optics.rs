@@ -21,21 +21,19 @@ impl<'a> Checker<'a> {
         self.refer(Section::Media, &document.system.ambient, "ambient");
     }
 
-    fn medium(&mut self, medium: &Medium, path: &str) {
+    pub(super) fn medium(&mut self, medium: &Medium, path: &str) {
         match medium {
             Medium::Constant { n, k, absorption } => {
                 self.positive(*n, &format!("{path}.n"));
                 self.not_negative(k.unwrap_or(0.0), &format!("{path}.k"));
                 self.not_negative(absorption.map_or(0.0, |a| a.0), &format!("{path}.absorption"));
-                self.require(k.is_none() || absorption.is_none(), path, || {
-                    Problem::error("both `k` and `absorption` are given").expecting("one of the two")
-                });
+                self.one_loss(k.is_some() && absorption.is_some(), path);
             }
             Medium::Sellmeier { b, c } => {
                 self.same_length([b.len(), c.len()], ["b", "c"], path);
                 b.iter().enumerate().for_each(|(at, b)| self.finite(*b, &format!("{path}.b[{at}]")));
             }
-            Medium::Tabulated { wavelength, n, k } => {
+            Medium::Tabulated { wavelength, n, k, absorption } => {
                 self.same_length([wavelength.len(), n.len()], ["wavelength", "n"], path);
                 self.wavelengths(wavelength, &format!("{path}.wavelength"));
                 n.iter().enumerate().for_each(|(at, n)| self.positive(*n, &format!("{path}.n[{at}]")));
@@ -43,6 +41,12 @@ impl<'a> Checker<'a> {
                     self.same_length([wavelength.len(), k.len()], ["wavelength", "k"], path);
                     k.iter().enumerate().for_each(|(at, k)| self.not_negative(*k, &format!("{path}.k[{at}]")));
                 }
+                if let Some(alpha) = absorption {
+                    self.same_length([wavelength.len(), alpha.len()], ["wavelength", "absorption"], path);
+                    let place = |at| format!("{path}.absorption[{at}]");
+                    alpha.iter().enumerate().for_each(|(at, alpha)| self.not_negative(alpha.0, &place(at)));
+                }
+                self.one_loss(k.is_some() && absorption.is_some(), path);
             }
             Medium::Air { temperature, pressure } => {
                 let [kelvin, pascal] = [temperature.0, pressure.0];
@@ -57,7 +61,15 @@ impl<'a> Checker<'a> {
                 self.file(file, path);
                 self.not_empty(glass, &format!("{path}.glass"), "the name of the glass");
             }
+            Medium::Turbid { host, scatter } => {
+                self.medium(host, &format!("{path}.host"));
+                self.bulk(scatter, &format!("{path}.scatter"));
+            }
         }
+    }
+
+    fn one_loss(&mut self, both: bool, path: &str) {
+        self.require(!both, path, || Problem::error("both `k` and `absorption` are given").expecting("one of the two"));
     }
 
     /// A name of the built-in catalogue.
