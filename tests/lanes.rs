@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+use straylight::packet::Class;
 use straylight::scene::Scene;
 use straylight::settings::Settings;
 use straylight::system::compile::{Compiled, compile};
@@ -64,6 +65,26 @@ fn a_lane_has_the_flux_of_a_run_of_its_own() {
         let (a, b) = (together.sums.estimate(slot, lane), alone.sums.estimate(slot, 0));
         assert!((a.mean - b.mean).abs() < 4.0 * a.error.hypot(b.error), "{file}: {a:?} {b:?}");
     }
+}
+
+/// The tables of the three walls are one table times 0.5, 1 and 2, to six digits. So light scattered n times is 0.5^n : 1 : 2^n in
+/// one trace, and ghosts are the same in all lanes.
+#[test]
+fn light_scattered_n_times_goes_with_the_nth_power_of_the_wall() {
+    let scene = side_by_side(["low.ron", "system.ron", "high.ron"]);
+    let settings = Settings { rays: 8192, paths: 0, ..load("system.ron").settings };
+    let counts = run::<3>(&scene, &settings, &AtomicBool::new(false), &|_| ());
+    let flux =
+        |class: Class| [0, 1, 2].map(|lane| counts.sums.estimate(counts.layout.class(0, class.index()), lane).mean);
+    for n in 1..=3 {
+        let [low, plausible, high] = flux(Class::Scatter(n));
+        let power = 2f64.powi(n.into());
+        println!("scatter {n}: {:.7} : 1 : {:.7}", low / plausible, high / plausible);
+        assert!(plausible > 0.0 && (low / plausible * power - 1.0).abs() < 1e-5, "{low} {plausible}");
+        assert!((high / plausible / power - 1.0).abs() < 1e-5, "{high} {plausible}");
+    }
+    let [low, plausible, high] = flux(Class::Ghost(2));
+    assert!(plausible > 0.0 && low == plausible && high == plausible, "{low} {plausible} {high}");
 }
 
 /// Published: 0.5 : 1 : 2. The ghosts, 2.5 % of the plausible flux, do not scale with the wall.

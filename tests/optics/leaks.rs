@@ -120,7 +120,7 @@ fn no_ray_is_lost_in_the_lens_stacks() {
             rays: rays as u64,
             paths: 0,
             splits: 0,
-            scatter_splits: 0,
+            scatter_splits: 1,
             roulette: Roulette { below: 1e-3, survive: 0.1 },
             until: None,
             ..compiled.settings
