@@ -5,9 +5,14 @@
 //! f |cos theta_s| dw times the incident flux.
 
 pub mod abg;
+pub mod csv;
+mod entries;
+pub mod fred;
 pub mod lambertian;
+pub mod reading;
 pub mod speos;
 pub mod tabulated;
+pub mod zemax;
 
 use crate::math::Rng;
 use crate::optics::Incidence;

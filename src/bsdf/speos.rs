@@ -16,49 +16,19 @@
 //!
 //! Refused with a message: binary files, transmission, intensity values, several anisotropy angles.
 
+use super::reading::{Problem, Rows, shorten};
 use super::tabulated::{Lobe, Table};
 use crate::math::table::linear;
 use std::f64::consts::{FRAC_1_PI, TAU};
-use std::fmt;
 
-/// What is wrong with a file, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
-    /// 1-based.
-    pub line: usize,
-    pub message: String,
-    pub expected: String,
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}; expected {}", self.line, self.message, self.expected)
-    }
-}
-
-impl std::error::Error for Problem {}
-
-/// Reads the text of a file. All bad numbers of the tables are reported (the first twenty); anything that makes the rest
-/// unreadable stops.
+/// Reads the text of a file.
 pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
-    let mut file = Rows { lines: text.trim_start_matches('\u{feff}').lines(), line: 0, problems: Vec::new() };
-    file.table().map_err(|last| {
-        file.problems.push(last);
-        file.problems
-    })
+    let mut file = Rows::new(text);
+    file.speos().map_err(|last| file.all(last))
 }
 
-/// Problems collected before giving up.
-const ENOUGH: usize = 20;
-
-struct Rows<'a> {
-    lines: std::str::Lines<'a>,
-    line: usize,
-    problems: Vec<Problem>,
-}
-
-impl<'a> Rows<'a> {
-    fn table(&mut self) -> Result<Table, Problem> {
+impl Rows<'_> {
+    fn speos(&mut self) -> Result<Table, Problem> {
         self.header()?;
         let incidence = self.incidence()?;
         let reference = self.numbers("the angles (deg) of the spectrum", 2)?[0].to_radians();
@@ -156,71 +126,6 @@ impl<'a> Rows<'a> {
         phi[columns - 1] = TAU;
         Lobe::new(incidence, theta, phi, value).ok_or_else(|| self.problem("the table has no shape", "rising angles"))
     }
-
-    /// Values must be BRDF; every bad row is noted, reading goes on.
-    fn check(&mut self, values: &[f64]) -> Result<(), Problem> {
-        if let Some(bad) = values.iter().find(|v| **v < 0.0) {
-            let problem = self.problem(&format!("found a BRDF of {bad}"), "values >= 0");
-            if self.problems.len() + 1 >= ENOUGH {
-                return Err(problem);
-            }
-            self.problems.push(problem);
-        }
-        Ok(())
-    }
-
-    fn rising(&self, values: &[f64], name: &str, range: std::ops::Range<f64>) -> Result<(), Problem> {
-        let good =
-            !values.is_empty() && values.windows(2).all(|w| w[0] < w[1]) && values.iter().all(|v| range.contains(v));
-        if good {
-            return Ok(());
-        }
-        let expected = format!("at least one, rising, from {} to {} deg", range.start, range.end.round());
-        Err(self.problem(&format!("the {name} do not rise or leave their range"), &expected))
-    }
-
-    fn next(&mut self, expected: &str) -> Result<&'a str, Problem> {
-        self.line += 1;
-        self.lines.next().ok_or_else(|| self.problem("the file ends here", expected))
-    }
-
-    /// Finite numbers separated by blanks, exactly `count` of them.
-    fn numbers(&mut self, what: &str, count: usize) -> Result<Vec<f64>, Problem> {
-        let row = self.next(what)?;
-        let mut values = Vec::new();
-        for word in row.split_whitespace() {
-            match word.parse::<f64>() {
-                Ok(v) if v.is_finite() => values.push(v),
-                _ => return Err(self.problem(&format!("`{}` is no number", shorten(word)), what)),
-            }
-        }
-        if values.len() == count {
-            return Ok(values);
-        }
-        Err(self.problem(&format!("found {} numbers", values.len()), &format!("{count}: {what}")))
-    }
-
-    fn count(&mut self, what: &str) -> Result<usize, Problem> {
-        let row = self.next(what)?;
-        row.trim().parse().map_err(|_| self.problem(&format!("found `{}`", shorten(row)), what))
-    }
-
-    fn choice(&mut self, what: &str, allowed: &[&str], expected: &str) -> Result<(), Problem> {
-        let row = self.next(what)?;
-        if row.split_whitespace().eq(allowed.iter().copied()) {
-            return Ok(());
-        }
-        Err(self.problem(&format!("{what}: found `{}`", shorten(row)), expected))
-    }
-
-    fn problem(&self, message: &str, expected: &str) -> Problem {
-        Problem { line: self.line, message: message.to_string(), expected: expected.to_string() }
-    }
-}
-
-/// The beginning of a text, for a message.
-fn shorten(text: &str) -> String {
-    text.chars().take(40).collect()
 }
 
 #[cfg(test)]

@@ -88,6 +88,7 @@ mod tests {
         options::<Specular>();
         options::<Scatter>();
         options::<ScatterSide>();
+        options::<Unmeasured>();
         options::<Order>();
         options::<Side>();
         options::<Scattering>();

@@ -8,3 +8,4 @@ mod phases;
 mod reference;
 mod samplers;
 mod scatter;
+mod tables;

@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3};
 use num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::{PI, TAU};
-use straylight::bsdf::{Abg, Bsdf, Lambertian, Side, Tabulated, speos};
+use straylight::bsdf::reading::Unmeasured;
+use straylight::bsdf::{Abg, Bsdf, Lambertian, Side, Tabulated, speos, zemax};
 use straylight::math::Rng;
 use straylight::math::quadrature::GaussLegendre;
 use straylight::optics::Incidence;
@@ -23,6 +24,7 @@ pub fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
         ("abg wide", Box::new(Abg::new(0.3, 5.0, 2.5, Side::Reflect))),
         ("abg transmitted", Box::new(Abg::new(0.001, 1e-4, 1.9, Side::Transmit))),
         ("black anodize", Box::new(anodize())),
+        ("black anodize, zemax", Box::new(zemax())),
     ]
 }
 
@@ -30,6 +32,12 @@ pub fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
 pub fn anodize() -> Tabulated {
     let text = include_str!("../../systems/triplet/black-anodize-plausible.anisotropicbsdf");
     Tabulated::new(speos::parse(text).expect("a good table"), 1.0).expect("below 100 %")
+}
+
+/// A measured anodize whose table counts angles from the specular ray.
+pub fn zemax() -> Tabulated {
+    let text = include_str!("../data/bsdf/AnoBlackEC1onAlum.bsdf");
+    Tabulated::new(zemax::parse(text, Unmeasured::Zero).expect("a good table"), 1.0).expect("below 100 %")
 }
 
 /// Incidences in air and in glass, from normal to grazing; for transmission also beyond the critical angle.

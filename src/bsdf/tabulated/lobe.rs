@@ -2,10 +2,27 @@
 
 use crate::math::table::bracket;
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-/// BRDF over polar angle (from the normal) and azimuth (from the specular side), bilinear between the entries; the polar
-/// angle's first and last rows are held outside them.
+/// The direction from which polar angles count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pole {
+    /// The normal; azimuth 0 is the specular side.
+    Normal,
+    /// The specular direction; azimuth 0 is towards the normal, and on beyond it.
+    Specular,
+}
+
+/// What lies beyond the last polar angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// The last value.
+    Hold,
+    /// Nothing.
+    Zero,
+}
+
+/// BRDF over polar angle and azimuth, bilinear between the entries; the polar angle's first row is held before it.
 #[derive(Clone, Debug)]
 pub struct Lobe {
     theta: Vec<f64>,
@@ -15,23 +32,43 @@ pub struct Lobe {
     /// Angle of incidence, rad, and its sine and cosine.
     incidence: f64,
     pub(super) specular: (f64, f64),
+    pole: Pole,
+    beyond: Beyond,
 }
 
 impl Lobe {
-    /// Lobe at `incidence` (rad) over `theta` (rad, strictly rising, 0..pi/2) and `phi` (rad, strictly rising from 0 to 2 pi) with
-    /// `value[theta][phi]` (1/sr, finite, >= 0). `None` if the lengths do not fit or the angles do not rise.
+    /// Lobe at `incidence` (rad) over `theta` (rad, strictly rising, 0..pi/2) from the normal and `phi` (rad, strictly rising from 0 to 2 pi) with
+    /// `value[theta][phi]` (1/sr, finite, >= 0), the last row held beyond. `None` if the lengths do not fit or the angles do not rise.
     pub fn new(incidence: f64, theta: Vec<f64>, phi: Vec<f64>, value: Vec<f64>) -> Option<Lobe> {
         let rises = |a: &[f64]| a.len() > 1 && a.windows(2).all(|w| w[0] < w[1]);
         if !rises(&theta) || !rises(&phi) || value.len() != theta.len() * phi.len() {
             return None;
         }
-        Some(Lobe { theta, phi, value, incidence, specular: incidence.sin_cos() })
+        let specular = incidence.sin_cos();
+        Some(Lobe { theta, phi, value, incidence, specular, pole: Pole::Normal, beyond: Beyond::Hold })
+    }
+
+    /// The same entries, counted from another direction and continued otherwise.
+    pub fn about(self, pole: Pole, beyond: Beyond) -> Lobe {
+        Lobe { pole, beyond, ..self }
     }
 
     /// BRDF towards `d` (1/sr) in the axes (forward, across, normal); below the horizon the value at the horizon.
     pub fn at(&self, d: DVec3) -> f64 {
-        let (i, u) = bracket(&self.theta, d.truncate().length().atan2(d.z.max(0.0)));
-        let phi = d.y.atan2(d.x);
+        let d = DVec3::new(d.x, d.y, d.z.max(0.0));
+        let from = match self.pole {
+            Pole::Normal => d,
+            Pole::Specular => {
+                let (sin, cos) = self.specular;
+                DVec3::new(d.z * sin - d.x * cos, d.y, d.x * sin + d.z * cos)
+            }
+        };
+        let polar = from.truncate().length().atan2(from.z);
+        if self.beyond == Beyond::Zero && polar > self.theta[self.theta.len() - 1] {
+            return 0.0;
+        }
+        let (i, u) = bracket(&self.theta, polar);
+        let phi = from.y.atan2(from.x);
         let (j, v) = bracket(&self.phi, if phi < 0.0 { phi + TAU } else { phi });
         let at = i * self.phi.len() + j;
         let row = |at: usize| self.value[at] + v * (self.value[at + 1] - self.value[at]);
@@ -39,8 +76,16 @@ impl Lobe {
         low + u * (high - low)
     }
 
-    /// Trapezoidal sum of BRDF cos(theta) sin(theta) d theta d phi over the entries: the TIS the table was written with, 0..1.
+    /// Scattered / incident flux. About the normal: the trapezoidal sum of BRDF cos(theta) sin(theta) d theta d phi over the entries, with
+    /// which such tables are written; else the integral, by midpoints of cells of equal projected solid angle.
     pub fn tis(&self) -> f64 {
+        match self.pole {
+            Pole::Normal => self.sum(),
+            Pole::Specular => self.integral(),
+        }
+    }
+
+    fn sum(&self) -> f64 {
         let columns = self.phi.len();
         let ring = |i: usize| -> f64 {
             let row = &self.value[i * columns..(i + 1) * columns];
@@ -50,14 +95,28 @@ impl Lobe {
         (1..self.theta.len()).map(|i| 0.5 * (ring(i) + ring(i - 1)) * (self.theta[i] - self.theta[i - 1])).sum()
     }
 
+    fn integral(&self) -> f64 {
+        const RINGS: u32 = 300;
+        let middle = |k: u32| (f64::from(k) + 0.5) / f64::from(RINGS);
+        let cell = |i: u32, j: u32| {
+            let (square, (sin, cos)) = (middle(i), (TAU * middle(j)).sin_cos());
+            self.at(DVec3::new(square.sqrt() * cos, square.sqrt() * sin, (1.0 - square).sqrt()))
+        };
+        let sum: f64 = (0..RINGS).map(|i| (0..RINGS).map(|j| cell(i, j)).sum::<f64>()).sum();
+        PI * sum / f64::from(RINGS * RINGS)
+    }
+
     /// Smallest step of theta, rad.
     pub(super) fn finest(&self) -> f64 {
         self.theta.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)
     }
 
-    /// phi of the entries, rad.
-    pub(super) fn azimuths(&self) -> &[f64] {
-        &self.phi
+    /// Azimuths about the normal in which the lobe is told apart, rad: its own, or every 10 deg if they count from elsewhere.
+    pub(super) fn azimuths(&self) -> Vec<f64> {
+        match self.pole {
+            Pole::Normal => self.phi.clone(),
+            Pole::Specular => (0..=36).map(|j| TAU * f64::from(j) / 36.0).collect(),
+        }
     }
 
     /// Angle of incidence, rad.
@@ -69,7 +128,7 @@ impl Lobe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
+    use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn entries_are_met_and_the_horizon_is_held() {

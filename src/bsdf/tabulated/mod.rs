@@ -17,7 +17,9 @@
 //! in single directions where the table falls by half from one azimuth to the next. The table itself is known to 6 % between its
 //! incidences.
 //!
-//! Left out: dependence on the azimuth of the sample (lay), transmission, polarisation; reciprocity is as good as the table.
+//! Transmitted lobes are the same, mirrored in the surface: about the ray that goes straight on, with angles in the medium beyond.
+//!
+//! Left out: dependence on the azimuth of the sample (lay), polarisation; reciprocity is as good as the table.
 
 mod alias;
 mod grid;
@@ -35,7 +37,7 @@ use shape::{Plane, Shape};
 use sheet::Sheet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
 
-pub use lobe::Lobe;
+pub use lobe::{Beyond, Lobe, Pole};
 
 /// A measured table as a file gives it.
 #[derive(Clone, Debug)]
@@ -48,6 +50,10 @@ pub struct Table {
     wavelength: Vec<f64>,
     /// Factor on the whole table at each wavelength, dimensionless; linear between, held outside.
     factor: Vec<f64>,
+    /// Scattered / incident flux at each incidence at factor 1.
+    tis: Vec<f64>,
+    /// True if the lobes are those of transmitted light, about the ray that goes straight on.
+    transmitted: bool,
 }
 
 impl Table {
@@ -60,7 +66,24 @@ impl Table {
         if !rises(&incidence) || !rises(&wavelength) || incidence[0] < 0.0 || incidence[lobes.len() - 1] >= FRAC_PI_2 {
             return None;
         }
-        Some(Table { incidence, lobes, wavelength, factor })
+        let tis = lobes.iter().map(Lobe::tis).collect();
+        Some(Table { incidence, lobes, wavelength, factor, tis, transmitted: false })
+    }
+
+    /// The same shapes with a stated scattered / incident flux for each incidence (as many).
+    pub fn scattering(self, tis: Vec<f64>) -> Table {
+        Table { tis, ..self }
+    }
+
+    /// The same lobes on the other side of the surface.
+    pub fn transmitted(self) -> Table {
+        Table { transmitted: true, ..self }
+    }
+
+    /// Scattered / incident flux by angle of incidence (rad) at factor 1: as it is used, and as the lobes integrate.
+    pub fn totals(&self) -> impl Iterator<Item = (f64, [f64; 2])> + '_ {
+        let pairs = self.tis.iter().zip(&self.lobes);
+        self.incidence.iter().zip(pairs).map(|(incidence, (tis, lobe))| (*incidence, [*tis, lobe.tis()]))
     }
 }
 
@@ -82,8 +105,10 @@ pub struct Tabulated {
     grid: Grid,
     /// Angles of incidence of the sheets, rad, 0 to pi/2.
     nodes: Vec<f64>,
-    /// BRDF at the nodes, before the spectrum.
+    /// BSDF at the nodes, before the spectrum.
     sheets: Vec<Sheet>,
+    /// Sign of z where the light goes.
+    side: f64,
 }
 
 impl Tabulated {
@@ -91,7 +116,7 @@ impl Tabulated {
     /// 15 MB and 0.1 s for steps of 1 by 10 deg, at most about 64 MB. Fails if it scatters more light than arrives.
     pub fn new(mut table: Table, scale: f64) -> Result<Tabulated, TooBright> {
         table.factor.iter_mut().for_each(|f| *f *= scale);
-        let tis: Vec<f64> = table.lobes.iter().map(Lobe::tis).collect();
+        let tis = table.tis;
         let brightest = table.factor.iter().copied().fold(0.0, f64::max);
         for (&incidence, tis) in table.incidence.iter().zip(&tis) {
             // Tables that mean exactly 100 % reach it to the rounding of their decimals.
@@ -107,7 +132,13 @@ impl Tabulated {
             Sheet::new(&grid, value, continued(&shape.incidence, &tis, theta).min(1.0 / brightest))
         };
         let sheets = nodes.iter().map(sheet).collect();
-        Ok(Tabulated { spectrum: (table.wavelength, table.factor), grid, nodes, sheets })
+        let side = if table.transmitted { -1.0 } else { 1.0 };
+        Ok(Tabulated { spectrum: (table.wavelength, table.factor), grid, nodes, sheets, side })
+    }
+
+    /// A direction on the side of the lobes as one with z > 0, and back.
+    fn mirrored(&self, d: DVec3) -> DVec3 {
+        DVec3::new(d.x, d.y, self.side * d.z)
     }
 
     /// Factor of the spectrum and the scale at a vacuum wavelength (m).
@@ -150,7 +181,7 @@ const STEEP: f64 = FRAC_PI_3;
 /// The grid of the sheets and their nodes of incidence. Rings and steps of incidence are as fine as the table's finest step of theta, but
 /// within 0.25 to 1.5 deg, and coarser where memory asks for it; the table's own incidences are nodes.
 fn resolution(shape: &Shape) -> (Grid, Vec<f64>) {
-    let phi = sectors(shape.azimuths());
+    let phi = sectors(&shape.azimuths());
     let finest = shape.lobes.iter().map(Lobe::finest).fold(f64::INFINITY, f64::min);
     let smallest = FRAC_PI_2 * (phi.len() as f64 / MOST).sqrt();
     let step = finest.clamp(0.25f64.to_radians(), 1.5f64.to_radians()).max(smallest);
@@ -177,10 +208,12 @@ fn sectors(phi: &[f64]) -> Vec<f64> {
 
 impl Bsdf for Tabulated {
     fn eval(&self, at: &Incidence, wo: DVec3) -> f64 {
+        let wo = self.mirrored(wo);
         if wo.z <= 0.0 { 0.0 } else { self.factor(at.wavelength) * self.mixture(at.wi, wo).0 }
     }
 
     fn pdf(&self, at: &Incidence, wo: DVec3) -> f64 {
+        let wo = self.mirrored(wo);
         if wo.z <= 0.0 {
             return 0.0;
         }
@@ -197,12 +230,16 @@ impl Bsdf for Tabulated {
         let rest = first * (one + other);
         let (sheet, part) = if rest < one { (a, rest / one) } else { (b, (rest - one) / other) };
         let part = part.min(1.0 - f64::EPSILON / 2.0);
-        (one + other > 0.0).then(|| plane.leave(sheet.draw(&self.grid, [part, second])))
+        (one + other > 0.0).then(|| self.mirrored(plane.leave(sheet.draw(&self.grid, [part, second]))))
     }
 
     fn albedo(&self, at: &Incidence) -> f64 {
         let [(a, s), (b, w)] = self.around(Plane::of(at.wi).theta);
         self.factor(at.wavelength) * (s * a.flux() + w * b.flux())
+    }
+
+    fn transmits(&self) -> bool {
+        self.side < 0.0
     }
 }
 

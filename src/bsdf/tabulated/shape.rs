@@ -57,7 +57,7 @@ impl Shape {
     }
 
     /// Azimuths of the lobe that has most of them, rad.
-    pub fn azimuths(&self) -> &[f64] {
+    pub fn azimuths(&self) -> Vec<f64> {
         self.lobes.iter().map(Lobe::azimuths).max_by_key(|phi| phi.len()).unwrap_or_default()
     }
 }

@@ -46,33 +46,64 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
             };
             vec![Box::new(bsdf::Abg::new(*a, *b, *g, side))]
         }
-        written::Scatter::Table { file, scale } => table(shop, file, *scale, path).into_iter().collect(),
+        written::Scatter::Table { file, scale, unmeasured } => {
+            table(shop, file, *scale, *unmeasured, path).into_iter().collect()
+        }
         written::Scatter::Sum(parts) => {
             parts.iter().enumerate().flat_map(|(i, part)| lobes(shop, part, &format!("{path}[{i}]"))).collect()
         }
     }
 }
 
-fn table(shop: &mut Shop, file: &Path, scale: f64, path: &str) -> Option<Box<dyn Bsdf>> {
+fn table(
+    shop: &mut Shop,
+    file: &Path,
+    scale: f64,
+    unmeasured: written::Unmeasured,
+    path: &str,
+) -> Option<Box<dyn Bsdf>> {
     let resolved = shop.document.resolve(file);
     let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
-    let table = match bsdf::speos::parse(&text) {
+    let rule = match unmeasured {
+        written::Unmeasured::Zero => bsdf::reading::Unmeasured::Zero,
+        written::Unmeasured::Hold => bsdf::reading::Unmeasured::Hold,
+    };
+    let table = match bsdf::reading::parse(&text, rule) {
         Ok(table) => table,
         Err(faults) => {
             let place = |line: usize| Span { line: line as u32, column: 1, len: 1 };
-            let problem = |fault: bsdf::speos::Problem| {
+            let problem = |fault: bsdf::reading::Problem| {
                 Problem::error(fault.message).expecting(fault.expected).at(place(fault.line)).in_file(&resolved)
             };
             shop.problems.extend(faults.into_iter().map(problem));
             return None;
         }
     };
+    contradictions(shop, &table, path);
     match bsdf::Tabulated::new(table, scale) {
         Ok(table) => Some(Box::new(table)),
         Err(bright) => {
             shop.fault(path, Problem::error(bright.to_string()));
             None
         }
+    }
+}
+
+/// Says where a file states another TIS than its values integrate to.
+fn contradictions(shop: &mut Shop, table: &bsdf::tabulated::Table, path: &str) {
+    const APART: f64 = 0.05;
+    let apart = |[stated, found]: [f64; 2]| (stated - found).abs() > APART * stated.max(found);
+    let said: Vec<String> = table
+        .totals()
+        .filter(|(_, totals)| apart(*totals))
+        .map(|(incidence, [stated, found])| {
+            let percent = |share: f64| format!("{:.1}", 100.0 * share);
+            format!("{} % at {:.0} deg (integral {} %)", percent(stated), incidence.to_degrees(), percent(found))
+        })
+        .collect();
+    if !said.is_empty() {
+        let what = format!("the file states a TIS that its values do not integrate to: {}", said.join(", "));
+        shop.fault(path, Problem::warning(what).hinting("the stated TIS is used, the values are its shape".to_owned()));
     }
 }
 

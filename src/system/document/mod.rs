@@ -37,7 +37,7 @@ pub use names::Names;
 pub use parameter::Choice;
 pub use read::SECTIONS;
 pub use run::{Roulette, Run, Until};
-pub use scatter::{Scatter, ScatterSide};
+pub use scatter::{Scatter, ScatterSide, Unmeasured};
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 

@@ -29,14 +29,28 @@ pub enum Scatter {
     },
     /// A measured table.
     Table {
-        /// A Speos `.anisotropicbsdf` text file, relative to the system file.
+        /// A Speos `.anisotropicbsdf`, a Zemax `.bsdf`, a FRED table or a CSV, as text, relative to the system file.
         file: PathBuf,
         /// Factor on the scattered flux, dimensionless, >= 0.
         #[serde(default = "one")]
         scale: f64,
+        /// What lies where nothing was measured.
+        #[serde(default)]
+        unmeasured: Unmeasured,
     },
     /// Several models at once: their BSDFs add.
     Sum(Vec<Scatter>),
+}
+
+/// What lies where a table says zero, or nothing, because nothing was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Unmeasured {
+    /// No light.
+    #[default]
+    Zero,
+    /// What was measured last on the way there.
+    Hold,
 }
 
 /// The specular direction that a lobe surrounds.

@@ -130,7 +130,7 @@ impl<'a> Checker<'a> {
                 self.positive(*b, &format!("{path}.b"));
                 self.not_negative(*g, &format!("{path}.g"));
             }
-            Scatter::Table { file, scale } => {
+            Scatter::Table { file, scale, unmeasured: _ } => {
                 self.file(file, path);
                 self.not_negative(*scale, &format!("{path}.scale"));
             }
