@@ -5,7 +5,7 @@
 //! f |cos theta_s| dw times the incident flux.
 
 pub mod abg;
-pub mod csv;
+pub mod csv_table;
 mod entries;
 pub mod fred;
 pub mod lambertian;

@@ -5,10 +5,10 @@
 //! | Ansys Speos `.anisotropicbsdf` | `OPTIS` in the first line | [`super::speos`] |
 //! | Zemax `.bsdf` | the key `ScatterAzimuth` | [`super::zemax`] |
 //! | FRED tabulated BSDF | `type bsdf_data` | [`super::fred`] |
-//! | CSV | a header with `bsdf_per_sr` | [`super::csv`] |
+//! | CSV | a header with `bsdf_per_sr` | [`super::csv_table`] |
 
 use super::tabulated::Table;
-use super::{csv, fred, speos, zemax};
+use super::{csv_table, fred, speos, zemax};
 use std::fmt;
 
 /// What is wrong with a file, and where.
@@ -50,7 +50,7 @@ pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> 
     } else if head("ScatterAzimuth") {
         zemax::parse(text, unmeasured)
     } else if text.lines().next().is_some_and(|line| line.contains("bsdf_per_sr")) {
-        csv::parse(text, unmeasured)
+        csv_table::parse(text, unmeasured)
     } else {
         let known =
             "a Speos .anisotropicbsdf, a Zemax .bsdf, a FRED table (`type bsdf_data`), or a CSV with `bsdf_per_sr`";
