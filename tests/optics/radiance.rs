@@ -247,29 +247,6 @@ fn len_06_image_irradiance() {
     image_irradiance("LEN-06x");
 }
 
-/// Peterson's sum over surfaces, with the ABg model's own values.
-#[test]
-fn str_05_in_field_scatter() {
-    use straylight::bsdf::{Abg, Bsdf};
-    use straylight::optics::Incidence;
-    let case = Case::load("STR-05");
-    let (na, entrance) = (case.given("/image_NA"), case.given("/entrance_beam_radius"));
-    for value in case.values() {
-        let r = number(&value, "r_mm");
-        let term = |surface: &serde_json::Value| {
-            let get = |name: &str| surface[name].as_f64().expect("a number");
-            let s = get("beam_footprint_radius");
-            let sine = na * r / s;
-            let model = Abg::new(get("A"), get("B"), get("g"), straylight::bsdf::Side::Reflect);
-            let wo = DVec3::new(sine, 0.0, (1.0 - sine * sine).sqrt());
-            get("T_after") * PI * na * na * (entrance / s).powi(2) * model.eval(&Incidence::in_air(0.0, 550e-9), wo)
-        };
-        let found: f64 = case.setup("/surfaces").as_array().expect("surfaces").iter().map(term).sum();
-        let wanted = number(&value, "E_over_Eent");
-        close(found, wanted, 1e-9, &format!("STR-05 r {r} mm"));
-    }
-}
-
 /// The plano-convex lens of LEN-02 turned over by a mirrored node, and the light with it: the same rays, mirrored.
 #[test]
 fn geo_04_mirrored_instance() {

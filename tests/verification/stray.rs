@@ -7,8 +7,9 @@ use crate::support::{Model, Trial};
 use glam::DVec3;
 use serde_json::Value;
 use std::f64::consts::PI;
+use straylight::tally::results::{Estimate, Results};
 
-cases! { str_01 str_01b str_02 str_03 str_04 str_06 str_06x str_07 str_07x sca_01 sca_04 }
+cases! { str_01 str_01b str_02 str_03 str_04 str_05 str_06 str_06x str_07 str_07x sca_01 sca_04 }
 
 /// A pencil of 1 W that meets the origin at an angle of incidence to +z, coming from -x, from 50 mm away.
 fn pencil(incidence: f64) -> String {
@@ -135,6 +136,88 @@ fn str_04(trial: &mut Trial) {
         let seen = scaled(results.detectors["focus"].classes["scatter 1"], gain);
         trial.check(format!("{angle} deg"), seen, wanted, 0.02 * wanted);
     }
+}
+
+/// Peterson's sum over two surfaces, each traced as a paraboloid of its own with the same numerical aperture and its own footprint: light
+/// scattered by it, in rings about the focus. A ring is wide; the formula is averaged over it.
+fn str_05(trial: &mut Trial) {
+    let (na, entrance) = (trial.case.given("/image_NA"), trial.case.given("/entrance_beam_radius"));
+    let surfaces = trial.case.setup("/surfaces").as_array().expect("surfaces").clone();
+    let traced: Vec<_> = surfaces
+        .iter()
+        .map(|surface| {
+            let get = |name: &str| number(surface, name);
+            let (footprint, f) = (get("beam_footprint_radius"), get("beam_footprint_radius") / na);
+            let text = format!(
+                "geometry: [], elements: {{
+                    \"mirror\": (body: Mirror(form: Conic(radius: \"{:?} mm\", conic: -1), diameter: \"{:?} mm\")),
+                }},
+                scatter: {{ \"rough\": ABg(a: {:?}, b: {:?}, g: {:?}) }},
+                surfaces: [(on: Node(\"mirror\"), specular: Mirror(reflectance: 1), scatter: \"rough\")],
+                sources: {{ \"star\": (flux: \"1 W\", extent: Disk(radius: \"{footprint:?} mm\"), at: \"(0, 0, {:?}) mm\",
+                    angular: Collimated(direction: \"(0, 0, 1)\"), spectrum: Line(\"550 nm\")) }},
+                detectors: {{ \"focus\": (on: Disk(at: \"(0, 0, {:?}) mm\", normal: \"(0, 0, 1)\", radius: \"6 mm\"),
+                    quantity: Irradiance, side: Front, pixels: (240, 240)) }},
+                run: (paths: 0),",
+                -2.0 * f,
+                2.2 * footprint,
+                get("A"),
+                get("B"),
+                get("g"),
+                -0.9 * f,
+                -f
+            );
+            (trial.run(&text, &Model::new(), 200_000), surface.clone())
+        })
+        .collect();
+    for value in trial.case.values() {
+        let radius = number(&value, "r_mm");
+        let [from, to] = [0.8 * radius, 1.2 * radius];
+        let formula = |r: f64| -> f64 {
+            let term = |surface: &serde_json::Value| {
+                let get = |name: &str| number(surface, name);
+                let s = get("beam_footprint_radius");
+                let bsdf = get("A") / (get("B") + (na * r / s).powf(get("g")));
+                get("T_after") * PI * na * na * (entrance / s).powi(2) * bsdf
+            };
+            surfaces.iter().map(term).sum()
+        };
+        assert!((formula(radius) / number(&value, "E_over_Eent") - 1.0).abs() < 1e-9);
+        let steps = 400;
+        let middle = |i: u32| from + (to - from) * (f64::from(i) + 0.5) / f64::from(steps);
+        let mean =
+            (0..steps).map(|i| middle(i) * formula(middle(i))).sum::<f64>() / (0..steps).map(middle).sum::<f64>();
+        let seen = traced.iter().map(|(results, surface)| {
+            let s = number(surface, "beam_footprint_radius");
+            // 1 W over the footprint is this many times the irradiance of the entrance beam.
+            let scale = PI * s * s * (entrance / s).powi(2) * number(surface, "T_after");
+            let Estimate { mean, error } = ring(results, "focus", [from, to]);
+            Estimate { mean: scale * mean, error: scale * error }
+        });
+        let seen = seen.fold(Estimate { mean: 0.0, error: 0.0 }, |a, b| Estimate {
+            mean: a.mean + b.mean,
+            error: a.error.hypot(b.error),
+        });
+        trial.check(format!("r {radius} mm"), seen, mean, 0.03 * mean);
+    }
+}
+
+/// Mean irradiance (W/mm2) in a ring about the middle of a map, between two radii in mm; every pixel counts by its middle.
+fn ring(results: &Results, detector: &str, [from, to]: [f64; 2]) -> Estimate {
+    let map = results.maps.iter().find(|map| map.detector == detector).expect("a map");
+    let [rows, columns] = map.shape;
+    let half = 6.0;
+    let (mut flux, mut variance, mut area) = (0.0, 0.0, 0.0);
+    for bin in 0..rows * columns {
+        let middle = |i: usize, n: usize| half * (2.0 * (i as f64 + 0.5) / n as f64 - 1.0);
+        let r = middle(bin % columns, columns).hypot(middle(bin / columns, rows));
+        if (from..to).contains(&r) {
+            flux += map.mean[bin] * map.extent[bin];
+            variance += (map.error[bin] * map.extent[bin]).powi(2);
+            area += 1e6 * map.extent[bin];
+        }
+    }
+    Estimate { mean: flux / area, error: variance.sqrt() / area }
 }
 
 /// Every cone is a run of its own; the window stands 100 mm above the plate, behind the start of the pencil.
