@@ -87,6 +87,11 @@ mod tests {
         options::<Specular>();
         options::<Scatter>();
         options::<ScatterSide>();
+        options::<ScatterAxis>();
+        options::<Roughness>();
+        options::<FacetLaw>();
+        options::<Facets>();
+        options::<FacetEnergy>();
         options::<Order>();
         options::<Side>();
         options::<Scattering>();

@@ -5,5 +5,6 @@ mod equations;
 mod interfaces;
 mod media;
 mod reference;
+mod rough;
 mod samplers;
 mod scatter;

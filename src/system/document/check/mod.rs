@@ -2,6 +2,7 @@
 
 mod light;
 mod optics;
+mod scatter;
 
 use super::tree::Shape;
 use super::{About, Body, Document, Run, read};
