@@ -15,6 +15,7 @@ fn main() -> ExitCode {
         Verb::Run(args) => cli::run::run(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
+        Verb::Bsdf(args) => cli::bsdf::bsdf(&args),
         Verb::Export(args) => cli::export::export(&args),
         Verb::Import(args) => cli::import::import(&args),
         Verb::Fit(args) => cli::fit::fit(&args),

@@ -5,10 +5,17 @@
 //! f |cos theta_s| dw times the incident flux.
 
 pub mod abg;
+pub mod cosine_power;
 pub mod csv_table;
 mod entries;
 pub mod fred;
+pub mod gaussian;
+pub mod harvey;
 pub mod lambertian;
+pub mod microfacet;
+pub mod oren_nayar;
+pub mod polish;
+pub mod radial;
 pub mod reading;
 pub mod speos;
 pub mod tabulated;
@@ -18,8 +25,15 @@ use crate::math::Rng;
 use crate::optics::Incidence;
 use glam::DVec3;
 
-pub use abg::{Abg, Side};
+pub use abg::Abg;
+pub use cosine_power::{Axis, CosinePower};
+pub use gaussian::Gaussian;
+pub use harvey::Harvey;
 pub use lambertian::Lambertian;
+pub use microfacet::{Compensation, Distribution, Facets, Microfacet};
+pub use oren_nayar::OrenNayar;
+pub use polish::{KCorrelation, Polish, PsdTable};
+pub use radial::Side;
 pub use tabulated::Tabulated;
 
 /// A scatter model. `eval`, `pdf`, `sample` and `albedo` describe one and the same function at every incidence.

@@ -1,6 +1,7 @@
 //! The command line: one file per verb. The only place that prints.
 
 mod against;
+pub mod bsdf;
 pub mod check;
 pub mod export;
 pub mod fit;
@@ -46,6 +47,8 @@ pub enum Verb {
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event
     Ray(ray::RayArgs),
+    /// Print and draw what a scatter model does: BSDF and TIS
+    Bsdf(bsdf::BsdfArgs),
     /// Write the geometry of a system as glTF
     Export(export::ExportArgs),
     /// Turn a lens of a design program into a system

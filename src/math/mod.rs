@@ -1,6 +1,7 @@
 //! Mathematics with no optics in it: random numbers, low-discrepancy points, sampling, tables, statistics, least squares.
 
 pub mod eigen;
+pub mod elliptic;
 pub mod least_squares;
 pub mod lowdiscrepancy;
 pub mod quadrature;

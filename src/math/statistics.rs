@@ -2,6 +2,12 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
+/// ln of Euler's beta function; 1 - erf; the inverse of erf on (-1, 1).
+pub use statrs::function::{
+    beta::ln_beta,
+    erf::{erf_inv as inverse_erf, erfc},
+};
+
 /// Mean and standard error of a mean from `n` independent values with the given sum and `spread`, the sum of their squared
 /// deviations from the mean. The error is 0 for n < 2 (nothing is known about it; callers see to n >= 20).
 pub fn mean_and_error(sum: f64, spread: f64, n: u64) -> (f64, f64) {

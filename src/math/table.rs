@@ -21,6 +21,36 @@ pub fn linear(grid: &[f64], values: &[f64], x: f64) -> f64 {
     if w == 0.0 { values[k] } else { values[k] + w * (values[k + 1] - values[k]) }
 }
 
+/// First of the four entries about `x` (in steps) in an even table of `count` >= 4, and Lagrange's weights of the cubic through them.
+pub fn cubic(x: f64, count: usize) -> (usize, [f64; 4]) {
+    let first = (x as usize).saturating_sub(1).min(count - 4);
+    let t = x - first as f64;
+    let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
+    (first, [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
+}
+
+/// A smooth function at even steps, cubic between: error 0.024 step^4 of its fourth derivative.
+#[derive(Clone, Debug)]
+pub struct Even {
+    from: f64,
+    step: f64,
+    values: Vec<f64>,
+}
+
+impl Even {
+    /// `f` at `count` >= 4 places from `from` to `to`.
+    pub fn new(from: f64, to: f64, count: usize, f: impl Fn(f64) -> f64) -> Even {
+        let step = (to - from) / (count - 1) as f64;
+        Even { from, step, values: (0..count).map(|k| f(from + step * k as f64)).collect() }
+    }
+
+    /// The function at `x`; outside of the table the nearest cubic goes on.
+    pub fn at(&self, x: f64) -> f64 {
+        let (first, weights) = cubic((x - self.from) / self.step, self.values.len());
+        self.values[first..first + 4].iter().zip(weights).map(|(v, w)| v * w).sum()
+    }
+}
+
 /// A discrete distribution, drawn by inverting its cumulated masses.
 #[derive(Clone, Debug)]
 pub struct Discrete {
@@ -76,6 +106,15 @@ mod tests {
         assert_eq!(bracket(&[5.0], 9.0), (0, 0.0));
         assert_eq!(linear(&grid, &[2.0, 3.0, 6.0], 2.0), 4.0);
         assert_eq!(linear(&[5.0], &[2.0], 9.0), 2.0);
+    }
+
+    #[test]
+    fn a_cubic_is_met_exactly() {
+        let f = |x: f64| 1.0 + x - 2.0 * x * x + 0.5 * x * x * x;
+        let even = Even::new(-1.0, 2.0, 13, f);
+        for x in [-1.0, -0.93, 0.1, 0.25, 1.99, 2.0] {
+            assert!((even.at(x) - f(x)).abs() < 1e-14, "{x}");
+        }
     }
 
     #[test]

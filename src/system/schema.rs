@@ -89,6 +89,11 @@ mod tests {
         options::<Scatter>();
         options::<ScatterSide>();
         options::<Unmeasured>();
+        options::<ScatterAxis>();
+        options::<Roughness>();
+        options::<FacetLaw>();
+        options::<Facets>();
+        options::<FacetEnergy>();
         options::<Order>();
         options::<Side>();
         options::<Scattering>();

@@ -36,6 +36,8 @@ const ABSORPTION: &[Unit] = &[
     ("m-1", 1.0, 0),
     ("cm-1", 1.0, 2),
 ];
+const POWER_DENSITY: &[Unit] =
+    &[("nm2um2", 1.0, -30), ("nm2mm2", 1.0, -24), ("um4", 1.0, -24), ("nm4", 1.0, -36), ("m4", 1.0, 0)];
 const ANGLE: &[Unit] = &[
     ("deg", PI / 180.0, 0),
     ("rad", 1.0, 0),
@@ -64,10 +66,11 @@ const PRESSURE: &[Unit] = &[("Pa", 1.0, 0), ("hPa", 1.0, 2), ("kPa", 1.0, 3), ("
 pub type Powers = [i8; 5];
 
 /// All units by what they measure; [`Coefficient`] adds the powers of lengths.
-const ALL: [(&[Unit], Powers); 8] = [
+const ALL: [(&[Unit], Powers); 9] = [
     (LENGTH, [1, 0, 0, 0, 0]),
     (WAVELENGTH_SQUARED, [2, 0, 0, 0, 0]),
     (ABSORPTION, [-1, 0, 0, 0, 0]),
+    (POWER_DENSITY, [4, 0, 0, 0, 0]),
     (ANGLE, [0, 1, 0, 0, 0]),
     (FLUX, [0, 0, 1, 0, 0]),
     (IRRADIANCE, [-2, 0, 1, 0, 0]),
@@ -159,6 +162,10 @@ quantities! {
     WavelengthSquared(f64) = scalar(WAVELENGTH_SQUARED), "a squared wavelength with its unit, such as \"0.006 um2\"";
     /// An absorption coefficient, 1/m.
     Absorption(f64) = scalar(ABSORPTION), "an absorption coefficient with its unit, such as \"0.1 /mm\"";
+    /// A spatial frequency, 1/m.
+    Frequency(f64) = scalar(ABSORPTION), "a spatial frequency with its unit, such as \"10 /mm\"";
+    /// A two-dimensional power spectral density of heights, m4.
+    PowerDensity(f64) = scalar(POWER_DENSITY), "a two-dimensional power spectral density, such as \"2.5 nm2 um2\"";
     /// An angle, rad.
     Angle(f64) = scalar(ANGLE), "an angle with its unit, such as \"0.05 deg\"";
     /// A radiant flux, W.

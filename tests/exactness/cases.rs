@@ -7,7 +7,7 @@ use std::path::Path;
 /// What waits, and for what.
 const WAITING: &[(&str, &[&str])] = &[
     ("thin films", &["TF-*"]),
-    ("more scatter models", &["SCA-02*", "SCA-06*", "SCA-07", "SCA-08", "SCA-09*", "SCA-12"]),
+    ("more scatter models", &["SCA-12"]),
     ("aiming and the backward direction", &["STA-07", "ADJ-*"]),
 ];
 

@@ -6,6 +6,7 @@ mod interfaces;
 mod media;
 mod phases;
 mod reference;
+mod rough;
 mod samplers;
 mod scatter;
 mod tables;

@@ -6,7 +6,10 @@ use num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::{PI, TAU};
 use straylight::bsdf::reading::Unmeasured;
-use straylight::bsdf::{Abg, Bsdf, Lambertian, Side, Tabulated, speos, zemax};
+use straylight::bsdf::{
+    Abg, Axis, Bsdf, Compensation, CosinePower, Distribution, Facets, Gaussian, Harvey, KCorrelation, Lambertian,
+    Microfacet, OrenNayar, Polish, PsdTable, Side, Tabulated, speos, zemax,
+};
 use straylight::math::Rng;
 use straylight::math::quadrature::GaussLegendre;
 use straylight::optics::Incidence;
@@ -23,9 +26,39 @@ pub fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
         ("abg flat", Box::new(Abg::new(0.1, 0.5, 0.0, Side::Reflect))),
         ("abg wide", Box::new(Abg::new(0.3, 5.0, 2.5, Side::Reflect))),
         ("abg transmitted", Box::new(Abg::new(0.001, 1e-4, 1.9, Side::Transmit))),
+        ("harvey", Box::new(Harvey::new(0.1, 0.01, -1.5, Side::Reflect))),
+        ("harvey l 1e-6", Box::new(Harvey::new(1e8, 1e-6, -2.0, Side::Reflect))),
+        ("harvey transmitted", Box::new(Harvey::new(0.1, 0.03, -2.6, Side::Transmit))),
+        ("gaussian", Box::new(Gaussian::new(5.0, 0.1, Side::Reflect))),
+        ("gaussian transmitted", Box::new(Gaussian::new(0.5, 0.3, Side::Transmit))),
+        ("cosine power", Box::new(CosinePower::new(0.4, 12.5, Axis::Specular))),
+        ("cosine power, retro", Box::new(CosinePower::new(0.4, 7.0, Axis::Source))),
+        ("oren-nayar", Box::new(OrenNayar::new(0.8, 0.5))),
+        ("polish", Box::new(Polish::new(ground(), Side::Reflect))),
+        ("polish transmitted", Box::new(Polish::new(ground(), Side::Transmit))),
+        ("polish, table", Box::new(Polish::new(profile(), Side::Reflect))),
+        ("ggx", Box::new(Microfacet::new(Distribution::Ggx, 0.1, Facets::Interface, Side::Reflect))),
+        ("ggx, mirror", Box::new(Microfacet::new(Distribution::Ggx, 0.5, Facets::Perfect, Side::Reflect))),
+        ("ggx transmitted", Box::new(Microfacet::new(Distribution::Ggx, 0.3, Facets::Interface, Side::Transmit))),
+        ("beckmann", Box::new(Microfacet::new(Distribution::Beckmann, 0.3, Facets::Interface, Side::Reflect))),
+        (
+            "beckmann transmitted",
+            Box::new(Microfacet::new(Distribution::Beckmann, 0.15, Facets::Interface, Side::Transmit)),
+        ),
+        ("ggx, what is lost", Box::new(Compensation::new(Distribution::Ggx, 0.6, Facets::Perfect))),
         ("black anodize", Box::new(anodize())),
         ("black anodize, zemax", Box::new(zemax())),
     ]
+}
+
+/// A polish with a shoulder at 20 um.
+fn ground() -> KCorrelation {
+    KCorrelation::new(2e-9, [0.0, 1e6], 20e-6, 2.4)
+}
+
+/// A measured polish of three slopes.
+fn profile() -> PsdTable {
+    PsdTable::new(&[(1e3, 1e-25), (5e4, 1e-26), (4e5, 1e-28), (2e6, 1e-31)])
 }
 
 /// The plausible wall of the triplet.
@@ -48,7 +81,25 @@ pub fn incidences(model: &dyn Bsdf) -> Vec<Incidence> {
     let all = pairs
         .iter()
         .flat_map(|&index| angles.map(|a| Incidence { index, ..Incidence::in_air(a.to_radians(), 550e-9) }));
-    all.collect()
+    lit(model, all)
+}
+
+/// Those at which the model scatters anything: a polish passes nothing beyond the critical angle.
+fn lit(model: &dyn Bsdf, all: impl Iterator<Item = Incidence>) -> Vec<Incidence> {
+    all.filter(|at| model.albedo(at) > 0.0).collect()
+}
+
+/// What the tables of a model's albedo may be off by, relative.
+pub fn slack(name: &str) -> f64 {
+    match name {
+        "polish, table" => 5e-4,
+        _ if name.starts_with("polish") => 2e-5,
+        _ if name.starts_with("abg") => 1e-7,
+        _ if name.starts_with("black") || name.starts_with("lambertian") => 1e-12,
+        _ if name.starts_with("oren") => 1e-10,
+        _ if name.starts_with("ggx") || name.starts_with("beckmann") => 1e-3,
+        _ => 5e-6,
+    }
 }
 
 /// Bins: both sides, rings of ln x about the specular direction, sectors about it.
@@ -252,6 +303,8 @@ fn every_sampler_draws_its_density() {
         for (k, at) in incidences(&*model).iter().enumerate() {
             let expected = if name.contains("anodize") {
                 over_points(at, &|wo| model.pdf(at, wo))
+            } else if slack(name) == 1e-3 {
+                over_bins(at, &Rules::new(30, 24), &|wo| model.pdf(at, wo))
             } else {
                 over_bins(at, &Rules::new(10, 12), &|wo| model.pdf(at, wo))
             };
@@ -261,6 +314,33 @@ fn every_sampler_draws_its_density() {
             assert!(d < 0.422 && p[0] > 1e-5, "{name}, incidence {k}: D {d}, {p:?}");
         }
     }
+}
+
+/// 0, 30, 60 and 85 deg, in and out of the xz plane; 1e6 draws each, all p-values above alpha = 0.01 by Sidak.
+#[test]
+#[ignore = "a minute of draws"]
+fn every_sampler_draws_its_density_to_a_million() {
+    let mut all = Vec::new();
+    for (name, model) in family().into_iter().filter(|(name, _)| !name.contains("anodize")) {
+        let angles = [(0.0f64, 0.0f64), (30.0, 0.0), (60.0, 0.0), (85.0, 0.0), (60.0, 40.0)];
+        let beyond = if model.transmits() { 1.5168 } else { 1.0 };
+        let at = |(theta, turn): (f64, f64)| {
+            let mut at = Incidence::in_air(theta.to_radians(), 550e-9);
+            at.wi = DVec3::new(at.wi.x * turn.to_radians().cos(), at.wi.x * turn.to_radians().sin(), at.wi.z);
+            Incidence { index: [Complex64::ONE, Complex64::new(beyond, 0.0)], ..at }
+        };
+        for at in lit(&*model, angles.into_iter().map(at)) {
+            let expected = over_bins(&at, &Rules::new(40, 24), &|wo| model.pdf(&at, wo));
+            let planes = planes(&at);
+            let bin = |wo: DVec3| if wo.z > 0.0 { planes[0].bin(wo) } else { RINGS * SECTORS + planes[1].bin(wo) };
+            let mut rng = Rng::new(77, all.len() as u64, 0);
+            let p = chi_squared(1_000_000, &expected, || model.sample(&at, &mut rng).map(bin));
+            all.push((p, name, at.wi));
+        }
+    }
+    let alpha = 1.0 - 0.99f64.powf(1.0 / all.len() as f64);
+    let failed: Vec<_> = all.iter().filter(|(p, ..)| *p < alpha).collect();
+    assert!(failed.is_empty(), "{failed:?} of {} below {alpha:e}", all.len());
 }
 
 #[test]
@@ -278,9 +358,8 @@ fn the_mean_weight_of_a_sampler_is_the_albedo() {
             let mean = sum / f64::from(n);
             let sigma = ((squares / f64::from(n) - mean * mean).max(0.0) / f64::from(n)).sqrt();
             let wanted = model.albedo(&at);
-            // Where all weights are the same, sigma is 0 and what is left is rounding, or the interpolation of ABg's albedo.
-            let slack = if name.contains("abg") { 1e-7 } else { 1e-12 };
-            assert!((mean - wanted).abs() < 4.0 * sigma + slack * wanted, "{name}: {mean} +- {sigma}, {wanted}");
+            // Where all weights are the same, sigma is 0 and what is left is rounding, or the interpolation of the albedo.
+            assert!((mean - wanted).abs() < 4.0 * sigma + slack(name) * wanted, "{name}: {mean} +- {sigma}, {wanted}");
         }
     }
 }

@@ -1,12 +1,14 @@
-//! Maps as pictures: row 0 at the bottom, columns to the right, so that a picture shows the detector from the stated side.
+//! Curves, and maps as pictures: row 0 at the bottom, columns to the right, so that a picture shows the detector from the stated side.
 
 mod axis;
 mod canvas;
+mod chart;
 mod field;
 mod plot;
 mod scale;
 
 pub use axis::{Span, superscript, ticks};
+pub use chart::{Curve, Division, Ruler, chart};
 pub use field::{Cell, Field};
 pub use plot::{bare, png};
 pub use scale::{Mark, Palette, Scale};

@@ -40,7 +40,11 @@ pub fn bare(field: &Field, scale: &Scale, palette: Palette) -> io::Result<Vec<u8
 pub fn png(map: &MapResult, system: &str) -> io::Result<Vec<u8>> {
     let field = Field::of(map);
     let scale = Scale::of(field.lit());
-    let canvas = Plot::new(&field, scale, map).draw(map, system);
+    encode(&Plot::new(&field, scale, map).draw(map, system))
+}
+
+/// A canvas as a PNG.
+pub fn encode(canvas: &Canvas) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, canvas.width as u32, canvas.height as u32);
     encoder.set_color(png::ColorType::Rgb);

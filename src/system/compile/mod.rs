@@ -11,6 +11,8 @@ mod media;
 mod models;
 mod parts;
 mod receivers;
+mod scatter;
+mod scatterer;
 pub mod understanding;
 
 use super::document::Document;
@@ -22,6 +24,7 @@ use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
 use glam::DVec3;
 pub use parts::{parts_of_file, parts_of_system};
+pub use scatterer::{Scatterer, scatterer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 pub use understanding::Understanding;

@@ -37,7 +37,7 @@ pub use names::Names;
 pub use parameter::Choice;
 pub use read::SECTIONS;
 pub use run::{Roulette, Run, Until};
-pub use scatter::{Scatter, ScatterSide, Unmeasured};
+pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis, ScatterSide, Unmeasured};
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 
@@ -268,7 +268,7 @@ fn tables<'a>(scatter: &'a Scatter, path: &str, files: &mut Vec<(String, &'a Pat
         Scatter::Sum(parts) => {
             parts.iter().enumerate().for_each(|(at, part)| tables(part, &format!("{path}[{at}]"), files));
         }
-        Scatter::Lambertian { .. } | Scatter::ABg { .. } => {}
+        _ => {}
     }
 }
 

@@ -1,5 +1,6 @@
 //! How a surface scatters.
 
+use crate::system::units::{Angle, Frequency, Length, PowerDensity};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -26,6 +27,83 @@ pub enum Scatter {
         /// About which specular direction.
         #[serde(default)]
         side: ScatterSide,
+    },
+    /// BSDF = b0 (1 + (|beta - beta0| / l)^2)^(s/2), 1/sr.
+    HarveyShack {
+        /// BSDF at the specular ray, 1/sr, >= 0.
+        b0: f64,
+        /// Shoulder, dimensionless, > 0.
+        l: f64,
+        /// Slope, dimensionless, <= 0.
+        s: f64,
+        /// About which specular direction.
+        #[serde(default)]
+        side: ScatterSide,
+    },
+    /// BSDF = a exp(-|beta - beta0|^2 / sigma^2), 1/sr.
+    Gaussian {
+        /// BSDF at the specular ray, 1/sr, >= 0.
+        a: f64,
+        /// Distance where it falls to 1/e, dimensionless, > 0.
+        sigma: f64,
+        /// About which specular direction.
+        #[serde(default)]
+        side: ScatterSide,
+    },
+    /// BRDF = a cos^n of the angle to an axis, 1/sr.
+    CosinePower {
+        /// BRDF on the axis, 1/sr, >= 0.
+        a: f64,
+        /// Power, dimensionless, >= 0.
+        n: f64,
+        /// The axis.
+        #[serde(default)]
+        about: ScatterAxis,
+    },
+    /// A rough matt surface, made of Lambertian facets.
+    OrenNayar {
+        /// Reflectance of the facets, 0..1.
+        reflectance: f64,
+        /// Rms slope angle of the facets.
+        sigma: Angle,
+    },
+    /// A polished surface with PSD(f) = A / (1 + (b f)^2)^(s/2), two-dimensional; needs `order: Scaled`.
+    KCorrelation {
+        /// Which fixes A.
+        rms: Roughness,
+        /// Inverse of the shoulder's spatial frequency.
+        b: Length,
+        /// Slope of the two-dimensional spectrum, dimensionless, > 0.
+        s: f64,
+        /// About which specular direction.
+        #[serde(default)]
+        side: ScatterSide,
+    },
+    /// A polished surface with a measured two-dimensional power spectral density; needs `order: Scaled`.
+    Psd {
+        /// Spatial frequencies, increasing.
+        frequency: Vec<Frequency>,
+        /// Density at each of them, > 0.
+        density: Vec<PowerDensity>,
+        /// About which specular direction.
+        #[serde(default)]
+        side: ScatterSide,
+    },
+    /// A rough surface of facets that mirror and refract.
+    Microfacet {
+        /// The law of their normals.
+        distribution: FacetLaw,
+        /// Roughness, 0.001..1.
+        alpha: f64,
+        /// What a facet does to light.
+        #[serde(default)]
+        facets: Facets,
+        /// Reflected or refracted.
+        #[serde(default)]
+        side: ScatterSide,
+        /// What becomes of light that meets a second facet.
+        #[serde(default)]
+        energy: FacetEnergy,
     },
     /// A measured table.
     Table {
@@ -62,6 +140,78 @@ pub enum ScatterSide {
     Reflect,
     /// The refracted ray.
     Transmit,
+}
+
+/// The ray that a cosine lobe surrounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ScatterAxis {
+    /// The reflected ray.
+    #[default]
+    Specular,
+    /// The way back to the source of the light.
+    Source,
+}
+
+/// The law of the normals of a rough surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum FacetLaw {
+    /// Long-tailed: ground and etched glass.
+    #[serde(rename = "GGX")]
+    Ggx,
+    /// Gaussian slopes.
+    Beckmann,
+}
+
+/// What a facet of a rough surface does to light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Facets {
+    /// What Fresnel says of the two media.
+    #[default]
+    Interface,
+    /// Reflects, or passes, everything.
+    Perfect,
+}
+
+/// What becomes of light that meets a second facet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum FacetEnergy {
+    /// It is absorbed.
+    #[default]
+    SingleScatter,
+    /// It is given back, diffusely.
+    Compensated,
+}
+
+/// The rms height of a polished surface, and over which spatial frequencies it counts.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Roughness {
+    /// Over all frequencies.
+    Total(Length),
+    /// Over those of a measurement.
+    Band {
+        /// Rms height.
+        rms: Length,
+        /// Lowest spatial frequency.
+        from: Frequency,
+        /// Highest spatial frequency.
+        to: Frequency,
+    },
+}
+
+impl Scatter {
+    /// True if a part of it is the scatter of a shape alone, to be scaled by the reflectance and transmittance of the coating.
+    pub fn is_of_shape(&self) -> bool {
+        match self {
+            Scatter::KCorrelation { .. } | Scatter::Psd { .. } => true,
+            Scatter::Sum(parts) => parts.iter().any(Scatter::is_of_shape),
+            _ => false,
+        }
+    }
 }
 
 fn one() -> f64 {

@@ -3,6 +3,7 @@
 mod bulk;
 mod light;
 mod optics;
+mod scatter;
 
 use super::tree::Shape;
 use super::{About, Body, Document, Run, read};

@@ -1,10 +1,10 @@
-//! Checks of media, coatings, scatter models and surfaces.
+//! Checks of media, coatings and surfaces.
 
-use super::{Checker, ROUNDING, Section};
+use super::{Checker, Section};
 use crate::error::Problem;
 use crate::medium::catalog::Shelf;
 use crate::system::document::{
-    Coating, ExtrasValue, Finish, Medium, Predicate, Scatter, Scattering, Selector, Specular, Surface,
+    Coating, ExtrasValue, Finish, Medium, Predicate, Scattering, Selector, Specular, Surface,
 };
 use std::path::Path;
 
@@ -79,7 +79,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn file(&mut self, file: &Path, path: &str) {
+    pub(super) fn file(&mut self, file: &Path, path: &str) {
         self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
     }
 
@@ -104,41 +104,6 @@ impl<'a> Checker<'a> {
             Coating::Metal { n, k } => {
                 self.positive(*n, &format!("{path}.n"));
                 self.not_negative(*k, &format!("{path}.k"));
-            }
-        }
-    }
-
-    pub(super) fn scatter(&mut self) {
-        for (name, scatter) in self.document.system.scatter.iter() {
-            let path = format!("scatter[{name:?}]");
-            self.scatter_model(scatter, &path);
-            let sum = lambertian(scatter);
-            self.require(!matches!(scatter, Scatter::Sum(_)) || sum <= 1.0 + ROUNDING, &path, || {
-                Problem::error(format!("the Lambertian parts add up to {sum}: more light leaves than arrives"))
-                    .expecting("a sum of at most 1")
-            });
-        }
-    }
-
-    fn scatter_model(&mut self, scatter: &Scatter, path: &str) {
-        match scatter {
-            Scatter::Lambertian { reflectance, transmittance } => {
-                self.shares(&[("reflectance", *reflectance), ("transmittance", *transmittance)], path);
-            }
-            Scatter::ABg { a, b, g, side: _ } => {
-                self.not_negative(*a, &format!("{path}.a"));
-                self.positive(*b, &format!("{path}.b"));
-                self.not_negative(*g, &format!("{path}.g"));
-            }
-            Scatter::Table { file, scale, unmeasured: _ } => {
-                self.file(file, path);
-                self.not_negative(*scale, &format!("{path}.scale"));
-            }
-            Scatter::Sum(parts) => {
-                self.require(!parts.is_empty(), path, || Problem::error("this sum has no parts"));
-                for (at, part) in parts.iter().enumerate() {
-                    self.scatter_model(part, &format!("{path}[{at}]"));
-                }
             }
         }
     }
@@ -239,14 +204,5 @@ impl<'a> Checker<'a> {
                 }
             }
         }
-    }
-}
-
-/// Reflectance and transmittance of the Lambertian parts together, dimensionless.
-fn lambertian(scatter: &Scatter) -> f64 {
-    match scatter {
-        Scatter::Lambertian { reflectance, transmittance } => reflectance + transmittance,
-        Scatter::Sum(parts) => parts.iter().map(lambertian).sum(),
-        Scatter::ABg { .. } | Scatter::Table { .. } => 0.0,
     }
 }

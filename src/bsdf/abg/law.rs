@@ -1,5 +1,6 @@
 //! The radial law S(x) = 1 / (B + x^g) of an ABg lobe: value, integral over the plane, draws.
 
+use crate::bsdf::radial::Profile;
 use crate::math::Rng;
 use crate::math::quadrature::GaussLegendre;
 
@@ -8,7 +9,7 @@ const FARTHEST: f64 = 16.0;
 
 /// S(x) with its integral I(x) = integral_0^x S x' dx', tabulated in ln x.
 #[derive(Clone, Debug)]
-pub struct Radial {
+pub struct Law {
     b: f64,
     g: f64,
     /// ln of the knee B^(1/g), where x^g = B; -inf for g = 0.
@@ -19,17 +20,17 @@ pub struct Radial {
     integral: Vec<f64>,
 }
 
-impl Radial {
-    pub fn new(b: f64, g: f64) -> Radial {
+impl Law {
+    pub fn new(b: f64, g: f64) -> Law {
         let ln_knee = b.ln() / g;
         // Below a hundred-thousandth of the knee (and 1e-12) I = x^2 / 2B to better than 1e-10 of the whole.
         let start = (if g > 0.0 { ln_knee } else { 0.0 } + 1e-5f64.ln()).clamp(1e-12f64.ln(), -1.0);
         // Hermite error step^4/384 of the fourth derivative, which grows as g^3: below 1e-9.
         let count = ((FARTHEST.ln() - start) / (0.02f64).min(0.06 / g.max(1e-9))).ceil();
         let step = (FARTHEST.ln() - start) / count;
-        let mut radial = Radial { b, g, ln_knee, start, step, integral: Vec::new() };
-        radial.integral = radial.tabulate(count as usize);
-        radial
+        let mut law = Law { b, g, ln_knee, start, step, integral: Vec::new() };
+        law.integral = law.tabulate(count as usize);
+        law
     }
 
     fn tabulate(&self, count: usize) -> Vec<f64> {
@@ -42,21 +43,6 @@ impl Radial {
             table.push(sum);
         }
         table
-    }
-
-    /// Width of the lobe: x where S falls to half its peak, B^(1/g); 0 for g = 0.
-    pub fn knee(&self) -> f64 {
-        self.ln_knee.exp()
-    }
-
-    /// The exponent g.
-    pub fn steepness(&self) -> f64 {
-        self.g
-    }
-
-    /// 1 / (B + x^g), x >= 0.
-    pub fn value(&self, x: f64) -> f64 {
-        1.0 / (self.b + self.power(x))
     }
 
     /// x^g without the general power where g is a common whole number.
@@ -75,8 +61,31 @@ impl Radial {
         x * x * self.value(x)
     }
 
+    /// I(x) past the table, for indices nobody has: exact but slow.
+    fn beyond(&self, x: f64) -> f64 {
+        let rule = GaussLegendre::new(32);
+        self.integral[self.integral.len() - 1] + rule.integrate(FARTHEST.ln(), x.ln(), |u| self.slope(u.exp()))
+    }
+
+    /// `draw` where the knee lies beyond the reach: uniform on the disc, thinned by S B >= 1/2.
+    fn draw_below(&self, reach: f64, rng: &mut Rng) -> f64 {
+        loop {
+            let x = reach * rng.uniform().sqrt();
+            if rng.uniform() < self.b * self.value(x) {
+                return x;
+            }
+        }
+    }
+}
+
+impl Profile for Law {
+    /// 1 / (B + x^g), x >= 0.
+    fn value(&self, x: f64) -> f64 {
+        1.0 / (self.b + self.power(x))
+    }
+
     /// I(x), relative error below 1e-8; cubic Hermite in ln x with the exact slope.
-    pub fn integral(&self, x: f64) -> f64 {
+    fn integral(&self, x: f64) -> f64 {
         let at = (x.ln() - self.start) / self.step;
         if at <= 0.0 || x <= 0.0 {
             return 0.5 * self.slope(x.max(0.0));
@@ -94,12 +103,6 @@ impl Radial {
         s * s * ((1.0 + 2.0 * t) * p0 + t * m0) + t * t * ((3.0 - 2.0 * t) * p1 - s * m1)
     }
 
-    /// I(x) past the table, for indices nobody has: exact but slow.
-    fn beyond(&self, x: f64) -> f64 {
-        let rule = GaussLegendre::new(32);
-        self.integral[self.integral.len() - 1] + rule.integrate(FARTHEST.ln(), x.ln(), |u| self.slope(u.exp()))
-    }
-
     /// Draws x in [0, `reach`) with density S x / I(reach).
     ///
     /// Rejection from the envelope min(1/B, x^-g) x, which is invertible and at most twice S x: with t = x / knee, half
@@ -108,7 +111,7 @@ impl Radial {
     ///     mass above / mass below = 2 (e^(dL) - 1) / d,      t = (1 + v (e^(dL) - 1))^(1/d)
     ///
     /// Takes two numbers per trial, less than two trials on the average.
-    pub fn draw(&self, reach: f64, rng: &mut Rng) -> f64 {
+    fn draw(&self, reach: f64, rng: &mut Rng) -> f64 {
         let span = reach.ln() - self.ln_knee;
         if self.g == 0.0 {
             return reach * rng.uniform().sqrt();
@@ -133,14 +136,14 @@ impl Radial {
         }
     }
 
-    /// [`Radial::draw`] where the knee lies beyond the reach: uniform on the disc, thinned by S B >= 1/2.
-    fn draw_below(&self, reach: f64, rng: &mut Rng) -> f64 {
-        loop {
-            let x = reach * rng.uniform().sqrt();
-            if rng.uniform() < self.b * self.value(x) {
-                return x;
-            }
-        }
+    /// Where S falls to half its peak, B^(1/g); 0 for g = 0.
+    fn width(&self) -> f64 {
+        self.ln_knee.exp()
+    }
+
+    /// S has poles pi/g from the real axis of ln x.
+    fn steepness(&self) -> f64 {
+        self.g
     }
 }
 
@@ -180,7 +183,7 @@ mod tests {
     #[test]
     fn the_integral_of_g_2_is_a_logarithm() {
         for b in [1e-14, 1e-9, 1e-3, 1.0, 50.0] {
-            let s = Radial::new(b, 2.0);
+            let s = Law::new(b, 2.0);
             for x in [1e-13, 1e-7, 3e-5, 0.01, 0.9, 2.0, 7.9, 20.0] {
                 let closed = 0.5 * (x * x / b).ln_1p();
                 // 1e-10 of the largest integral, or 1e-8 of itself.
@@ -193,14 +196,14 @@ mod tests {
     #[test]
     fn the_integral_of_a_steep_law_is_that_of_a_disc() {
         // g = 40: 1/B inside x < 1, x^-40 outside.
-        let s = Radial::new(1.0, 40.0);
+        let s = Law::new(1.0, 40.0);
         assert!((s.integral(0.5) - 0.125).abs() < 1e-9);
     }
 
     #[test]
     fn draws_follow_the_integral() {
         for (b, g) in [(1e-9, 2.0), (1e-3, 1.8), (1e-4, 3.2), (0.02, 1.0), (1e-7, 0.01), (5.0, 2.0), (1e-3, 0.0)] {
-            let s = Radial::new(b, g);
+            let s = Law::new(b, g);
             let mut rng = Rng::new(11, 0, 0);
             let n = 100_000;
             let mut cell = [0u32; 10];
