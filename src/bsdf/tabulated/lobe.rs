@@ -2,7 +2,7 @@
 
 use crate::math::table::bracket;
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The direction from which polar angles count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,13 +76,11 @@ impl Lobe {
         low + u * (high - low)
     }
 
-    /// Scattered / incident flux. About the normal: the trapezoidal sum of BRDF cos(theta) sin(theta) d theta d phi over the entries, with
-    /// which such tables are written; else the integral, by midpoints of cells of equal projected solid angle.
+    /// Scattered / incident flux. Of entries about the normal that reach the horizon: the trapezoidal sum of BRDF cos(theta) sin(theta)
+    /// d theta d phi over them, with which such tables are written; else the integral, by midpoints of cells of equal projected solid angle.
     pub fn tis(&self) -> f64 {
-        match self.pole {
-            Pole::Normal => self.sum(),
-            Pole::Specular => self.integral(),
-        }
+        let whole = self.theta[self.theta.len() - 1] >= FRAC_PI_2 * (1.0 - 1e-9);
+        if self.pole == Pole::Normal && whole { self.sum() } else { self.integral() }
     }
 
     fn sum(&self) -> f64 {
@@ -128,7 +126,6 @@ impl Lobe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn entries_are_met_and_the_horizon_is_held() {
