@@ -5,6 +5,7 @@ pub mod ideal;
 pub mod metal;
 pub mod mirror;
 pub mod opaque;
+pub mod stack;
 
 use crate::optics::{Incidence, Split};
 
@@ -13,6 +14,7 @@ pub use ideal::Ideal;
 pub use metal::Metal;
 pub use mirror::Mirror;
 pub use opaque::Opaque;
+pub use stack::Stack;
 
 /// What a surface does to the specular part of light.
 pub trait Coating: Send + Sync + std::fmt::Debug {
