@@ -18,6 +18,7 @@ use crate::coating::Coating;
 use crate::math::Rng;
 use crate::optics::{Incidence, Split};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// How scatter and coating share the light (see the module).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +42,7 @@ pub enum Scattering {
 pub struct Surface {
     pub label: String,
     /// The specular part; `None`: absorbed.
-    pub specular: Option<Box<dyn Coating>>,
+    pub specular: Option<Arc<dyn Coating>>,
     pub lobes: Vec<Box<dyn Bsdf>>,
     pub order: Order,
     pub scattering: Scattering,
@@ -64,7 +65,7 @@ pub struct Shares {
 impl Surface {
     pub fn new(
         label: String,
-        specular: Option<Box<dyn Coating>>,
+        specular: Option<Arc<dyn Coating>>,
         lobes: Vec<Box<dyn Bsdf>>,
         order: Order,
         scattering: Scattering,

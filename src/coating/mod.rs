@@ -5,7 +5,10 @@ pub mod ideal;
 pub mod metal;
 pub mod mirror;
 pub mod opaque;
+pub mod splitter;
 pub mod stack;
+pub mod tabulated;
+pub mod zemax;
 
 use crate::optics::{Incidence, Split};
 
@@ -14,7 +17,17 @@ pub use ideal::Ideal;
 pub use metal::Metal;
 pub use mirror::Mirror;
 pub use opaque::Opaque;
+pub use splitter::Splitter;
 pub use stack::Stack;
+pub use tabulated::Tabulated;
+
+/// Which side of a face light arrives at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Where its normal points to: the outside of a solid.
+    Front,
+    Back,
+}
 
 /// What a surface does to the specular part of light.
 pub trait Coating: Send + Sync + std::fmt::Debug {
@@ -23,6 +36,11 @@ pub trait Coating: Send + Sync + std::fmt::Debug {
 
     /// True where nothing is ever transmitted: a reflection there is what the designer meant, not a ghost.
     fn opaque(&self) -> bool;
+
+    /// Vacuum wavelengths (m) at which the data hold; `None`: everywhere.
+    fn range(&self) -> Option<[f64; 2]> {
+        None
+    }
 
     /// True for an uncoated interface: it yields to a declared coating where two faces lie on each other.
     fn bare(&self) -> bool {

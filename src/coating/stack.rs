@@ -77,4 +77,9 @@ impl Coating for Stack {
     fn opaque(&self) -> bool {
         self.substrate.is_some()
     }
+
+    fn range(&self) -> Option<[f64; 2]> {
+        let ranges = self.media.iter().chain(&self.substrate).filter_map(|medium| medium.range());
+        ranges.reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
+    }
 }

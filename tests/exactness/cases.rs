@@ -6,7 +6,6 @@ use std::path::Path;
 
 /// What waits, and for what.
 const WAITING: &[(&str, &[&str])] = &[
-    ("thin films", &["TF-*"]),
     ("more scatter models", &["SCA-02*", "SCA-06*", "SCA-07", "SCA-08", "SCA-09*", "SCA-10*", "SCA-11", "SCA-12"]),
     ("scattering media", &["VOL-01", "VOL-02", "VOL-03*", "VOL-04", "VOL-06", "VOL-07", "VOL-08"]),
     ("aiming and the backward direction", &["STA-07", "ADJ-*"]),

@@ -24,7 +24,7 @@
 
 mod table;
 
-use super::refraction::normal_component_squared;
+use super::refraction::{normal_component_squared, root};
 use super::{Amplitudes, Split};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -171,21 +171,6 @@ impl Passage {
             s: turned(foot.s, sin, sin * self.square),
             p: turned(foot.p, sin * self.square / self.permittivity, sin * self.permittivity),
         }
-    }
-}
-
-/// The square root in the first quadrant of `z` with Im z >= 0.
-fn root(z: Complex64) -> Complex64 {
-    if z.im == 0.0 {
-        return if z.re >= 0.0 { Complex64::new(z.re.sqrt(), 0.0) } else { Complex64::new(0.0, (-z.re).sqrt()) };
-    }
-    let size = z.re.hypot(z.im);
-    if z.re >= 0.0 {
-        let re = (0.5 * (size + z.re)).sqrt();
-        Complex64::new(re, 0.5 * z.im / re)
-    } else {
-        let im = (0.5 * (size - z.re)).sqrt();
-        Complex64::new(0.5 * z.im / im, im)
     }
 }
 

@@ -1,5 +1,6 @@
 //! What serde cannot see: ranges, names, contradictions. Everything is checked and everything wrong is reported.
 
+mod coating;
 mod light;
 mod optics;
 
