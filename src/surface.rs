@@ -47,6 +47,8 @@ pub struct Surface {
     pub order: Order,
     pub scattering: Scattering,
     opaque: bool,
+    /// See [`Coating::axis`].
+    pub axis: Option<DVec3>,
 }
 
 /// The bill of one arrival, fractions of the incident flux: what each branch gets, before polarisation.
@@ -71,7 +73,8 @@ impl Surface {
         scattering: Scattering,
     ) -> Surface {
         let opaque = specular.as_ref().is_none_or(|c| c.opaque()) && !lobes.iter().any(|l| l.transmits());
-        Surface { label, specular, lobes, order, scattering, opaque }
+        let axis = specular.as_ref().and_then(|coating| coating.axis());
+        Surface { label, specular, lobes, order, scattering, opaque, axis }
     }
 
     /// True if light never passes: a reflection here is meant, not a ghost.

@@ -28,5 +28,6 @@ mod write;
 
 pub use atomic::create;
 pub use measured::{below, measured};
+pub use picture::{Curve, Ink, Panel, Span, Stroke, curves};
 pub use text::text;
 pub use write::{WriteError, write};

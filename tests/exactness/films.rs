@@ -181,6 +181,55 @@ fn tables_and_splitters_share_as_they_say() {
     close(met(MEDIA, table, inside, "Unpolarized", "550 nm", true)[1], found[1], 1e-12, "table T from behind");
 }
 
+/// T of unpolarised light through sheets one behind the other in air, met at an angle (rad) in the xz plane.
+fn through(coatings: &[&str], theta: f64) -> f64 {
+    let written: String = coatings.iter().enumerate().map(|(i, coating)| format!("\"c{i}\": {coating}, ")).collect();
+    let on: String = (0..coatings.len()).map(|i| format!("(on: Node(\"s{i}\"), coating: \"c{i}\"), ")).collect();
+    let sections = format!(
+        "coatings: {{ {written} }}, surfaces: [{on}], {} {SINGLE}",
+        pencil(DVec3::ZERO, downward(theta), "Unpolarized", "550 nm")
+    );
+    let sheets = (0..coatings.len()).fold(Model::new(), |model, i| {
+        let place = DVec3::new(0.0, 0.0, -10.0 * i as f64);
+        model.add_at(&format!("s{i}"), rectangle(1000.0, 1000.0), glam::DQuat::IDENTITY, place)
+    });
+    results(&sections, &sheets).ledger_w.escaped.mean
+}
+
+#[test]
+fn polarisers_obey_malus_and_wave_plates_turn_what_passes() {
+    let polariser = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        format!("Polarizer(axis: \"({cos:?}, {sin:?}, 0)\")")
+    };
+    let plate = |degrees: f64, retardance: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        format!("Retarder(axis: \"({cos:?}, {sin:?}, 0)\", retardance: \"{retardance:?} deg\")")
+    };
+    let (first, crossed) = (polariser(20.0), polariser(110.0));
+    for turn in [0.0, 30.0, 60.0, 90.0f64] {
+        let malus = 0.5 * turn.to_radians().cos().powi(2);
+        close(through(&[&first, &polariser(20.0 + turn)], 0.0), malus, 1e-12, "Malus");
+    }
+    for retardance in [30.0, 90.0, 180.0f64] {
+        // Between crossed polarisers at 45 deg: sin^2(delta / 2).
+        let wanted = 0.5 * (0.5 * retardance.to_radians()).sin().powi(2);
+        close(through(&[&first, &plate(65.0, retardance), &crossed], 0.0), wanted, 1e-12, "a plate between polarisers");
+    }
+    let quarters = [&first[..], &plate(65.0, 90.0), &plate(65.0, 90.0), &crossed];
+    close(through(&quarters, 0.0), 0.5, 1e-12, "two quarter-wave plates are a half-wave plate");
+    close(
+        through(&[&first, &plate(65.0, 90.0), &plate(155.0, 90.0), &crossed], 0.0),
+        0.0,
+        1e-12,
+        "crossed plates undo",
+    );
+    // Slanted: an axis along s (y) stays, one along x is seen along p; they stay crossed.
+    close(through(&[&polariser(90.0), &polariser(0.0)], 0.7), 0.0, 1e-12, "crossed and slanted");
+    let leaky = "Polarizer(axis: \"(1, 0, 0)\", transmittance: 0.8, leakage: 0.1)";
+    close(through(&[leaky], 0.4), 0.45, 1e-12, "half of both");
+}
+
 /// What is wrong with a system of these coatings.
 fn refused(coating: &str) -> Vec<Problem> {
     let sections = format!(

@@ -2,11 +2,13 @@
 
 mod axis;
 mod canvas;
+mod curves;
 mod field;
 mod plot;
 mod scale;
 
 pub use axis::{Span, superscript, ticks};
+pub use curves::{Curve, Ink, Panel, Stroke, curves};
 pub use field::{Cell, Field};
 pub use plot::{bare, png};
 pub use scale::{Mark, Palette, Scale};

@@ -41,8 +41,13 @@ pub fn png(map: &MapResult, system: &str) -> io::Result<Vec<u8>> {
     let field = Field::of(map);
     let scale = Scale::of(field.lit());
     let canvas = Plot::new(&field, scale, map).draw(map, system);
+    encoded(&canvas)
+}
+
+/// A sheet as a PNG.
+pub fn encoded(canvas: &Canvas) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, canvas.width as u32, canvas.height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, canvas.width.unsigned_abs(), canvas.height.unsigned_abs());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.write_header()?.write_image_data(&canvas.pixels)?;

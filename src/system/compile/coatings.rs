@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Light does not come from a medium of a larger extinction k: nothing is left of it within micrometres.
+const CLEAR: f64 = 0.01;
+
 /// A coating for light that arrives at the front and at the back.
 pub type Faces = [Arc<dyn Coating>; 2];
 
@@ -55,6 +58,12 @@ pub fn faces(shop: &mut Shop, written: &written::Coating, media: &[Filling], pat
         written::Coating::Opaque { medium } => alike(coating::Opaque { medium: filling(medium) }),
         written::Coating::Splitter { reflectance: (rs, rp), transmittance: (ts, tp) } => {
             alike(coating::Splitter { reflectance: [*rs, *rp], transmittance: [*ts, *tp] })
+        }
+        written::Coating::Polarizer { axis, transmittance, leakage } => {
+            alike(coating::Polarizer { axis: axis.0, transmittance: *transmittance, leakage: *leakage })
+        }
+        written::Coating::Retarder { axis, retardance } => {
+            alike(coating::Retarder { axis: axis.0, retardance: retardance.0 })
         }
         written::Coating::Stack { layers, design, substrate } => {
             let films = films(shop, layers, *design, &filling, path)?;
@@ -151,7 +160,11 @@ fn stack(shop: &Shop, films: Films, substrate: Option<Arc<dyn Medium>>, media: &
         layers.push((place, thickness));
     }
     let lines = media::lines(shop.document);
-    let highest = |wavelength: f64| media.iter().map(|m| m.medium.index(wavelength).re).fold(1.0, f64::max);
+    let clear = |index: &Complex64| index.im < CLEAR;
+    let highest = |wavelength: f64| {
+        let indices = media.iter().map(|filling| filling.medium.index(wavelength)).filter(clear);
+        indices.map(|index| index.re).fold(1.0, f64::max)
+    };
     let ready = |layers| -> Arc<dyn Coating> {
         Arc::new(Stack::new(known.clone(), layers, substrate.clone()).tabulated(&lines, highest))
     };

@@ -1,7 +1,7 @@
 //! What is specular at a surface.
 
 use super::stack::Layer;
-use crate::system::units::{Angle, Wavelength};
+use crate::system::units::{Angle, Direction, Wavelength};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -44,6 +44,24 @@ pub enum Coating {
         reflectance: (f64, f64),
         /// Transmittances of s and p, 0..1.
         transmittance: (f64, f64),
+    },
+    /// An open sheet that passes light whose field is along its axis.
+    Polarizer {
+        /// In the world; light sees its projection across the ray.
+        axis: Direction,
+        /// Transmittance along the axis, 0..1; 1 if not given.
+        #[serde(default = "all")]
+        transmittance: f64,
+        /// Transmittance across the axis, 0..1; 0 if not given.
+        #[serde(default)]
+        leakage: f64,
+    },
+    /// A wave plate, an open sheet.
+    Retarder {
+        /// The fast axis in the world; light sees its projection across the ray.
+        axis: Direction,
+        /// Phase by which light across the axis comes later, rad.
+        retardance: Angle,
     },
     /// Thin films between the media of the face.
     Stack {
@@ -140,4 +158,8 @@ impl Specular {
             Specular::Metal { n, k } => Coating::Metal { n, k },
         })
     }
+}
+
+fn all() -> f64 {
+    1.0
 }

@@ -150,7 +150,10 @@ fn contradictions(scene: &Scene, note: Note) {
             one != other && declared(one) && declared(other)
         };
         if contradict(false) || contradict(true) {
-            let what = format!("`{}` and `{}` lie on each other with different coatings", a.label, b.label);
+            let [one, other] = [a, b].map(|part| &scene.surfaces[part.surface[0][0] as usize].label);
+            let coatings =
+                if one == other { "the same coating, which would be there twice" } else { "different coatings" };
+            let what = format!("`{}` and `{}` lie on each other with {coatings}", a.label, b.label);
             let problem = Problem::error(what).expecting("a coating on one of the two faces, the other one Fresnel");
             note("surfaces", problem.hinting("or `gap: Air` if they do not touch optically".to_owned()));
         }

@@ -51,6 +51,11 @@ impl<'a> Checker<'a> {
                     self.shares(&[(&format!("reflectance[{at}]"), *r), (&format!("transmittance[{at}]"), *t)], path);
                 }
             }
+            Coating::Polarizer { axis: _, transmittance, leakage } => {
+                self.fraction(*transmittance, &format!("{path}.transmittance"));
+                self.fraction(*leakage, &format!("{path}.leakage"));
+            }
+            Coating::Retarder { axis: _, retardance } => self.finite(retardance.0, &format!("{path}.retardance")),
             Coating::Stack { layers, design, .. } => {
                 design.iter().for_each(|design| self.wavelength(*design, &format!("{path}.design")));
                 let count = layers.iter().fold(0u64, |sum, layer| sum.saturating_add(layer.count()));
