@@ -19,6 +19,7 @@ fn main() -> ExitCode {
         Verb::Export(args) => cli::export::export(&args),
         Verb::Import(args) => cli::import::import(&args),
         Verb::Fit(args) => cli::fit::fit(&args),
+        Verb::Coating(args) => cli::coating::coating(&args),
         Verb::Schema => cli::schema::schema(),
     };
     cli::conclude(done)

@@ -18,6 +18,7 @@ use crate::coating::Coating;
 use crate::math::Rng;
 use crate::optics::{Incidence, Split};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// How scatter and coating share the light (see the module).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,11 +42,13 @@ pub enum Scattering {
 pub struct Surface {
     pub label: String,
     /// The specular part; `None`: absorbed.
-    pub specular: Option<Box<dyn Coating>>,
+    pub specular: Option<Arc<dyn Coating>>,
     pub lobes: Vec<Box<dyn Bsdf>>,
     pub order: Order,
     pub scattering: Scattering,
     opaque: bool,
+    /// See [`Coating::axis`].
+    pub axis: Option<DVec3>,
 }
 
 /// The bill of one arrival, fractions of the incident flux: what each branch gets, before polarisation.
@@ -64,13 +67,14 @@ pub struct Shares {
 impl Surface {
     pub fn new(
         label: String,
-        specular: Option<Box<dyn Coating>>,
+        specular: Option<Arc<dyn Coating>>,
         lobes: Vec<Box<dyn Bsdf>>,
         order: Order,
         scattering: Scattering,
     ) -> Surface {
         let opaque = specular.as_ref().is_none_or(|c| c.opaque()) && !lobes.iter().any(|l| l.transmits());
-        Surface { label, specular, lobes, order, scattering, opaque }
+        let axis = specular.as_ref().and_then(|coating| coating.axis());
+        Surface { label, specular, lobes, order, scattering, opaque, axis }
     }
 
     /// True if light never passes: a reflection here is meant, not a ghost.

@@ -27,7 +27,7 @@ const DOORS: [(&str, &[&str]); 23] = [
     ("base64", &["report/html/figure.rs", "system/gltf/uri.rs"]),
     ("clap", &["cli/", "main.rs"]),
     ("colorous", &["report/picture/scale.rs"]),
-    ("csv", &["report/paths.rs"]),
+    ("csv", &["coating/tabulated/csv.rs", "report/paths.rs"]),
     ("gltf", &["system/gltf/"]),
     ("indicatif", &["cli/run.rs"]),
     ("maud", &["report/html/"]),

@@ -3,6 +3,7 @@
 mod against;
 pub mod bsdf;
 pub mod check;
+pub mod coating;
 pub mod export;
 pub mod fit;
 pub mod import;
@@ -55,6 +56,8 @@ pub enum Verb {
     Import(import::ImportArgs),
     /// Find the planes, spheres, conics and cylinders that a mesh was made from
     Fit(fit::FitArgs),
+    /// Print and draw what a coating reflects, transmits and absorbs
+    Coating(coating::CoatingArgs),
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,

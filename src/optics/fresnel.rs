@@ -17,7 +17,7 @@
 //! Source: Born & Wolf, Principles of Optics, 7th ed., sec. 1.5.2 and 14.2; T_p of absorbing media: Byrnes,
 //! "Multilayer optical calculations", arXiv:1603.02720, eq. 21-22.
 
-use super::refraction::normal_component_squared;
+use super::refraction::{normal_component_squared, root};
 use super::{Amplitudes, Split};
 use num_complex::Complex64;
 
@@ -63,10 +63,7 @@ fn phase(a: f64, b: f64) -> Complex64 {
 /// An absorbing second medium.
 fn absorbing(n1: f64, n2: Complex64, cos1: f64) -> Split {
     let m1 = n1 * cos1;
-    let mut m2 = (n2 * n2 - n1 * n1 + m1 * m1).sqrt();
-    if m2.im < 0.0 {
-        m2 = -m2;
-    }
+    let m2 = root((n2 - n1) * (n2 + n1) + m1 * m1);
     let cos2 = m2 / n2;
     let (s, p) = (m1 + m2, n2 * cos1 + cos2 * n1);
     let reflected = Amplitudes { s: (m1 - m2) / s, p: (n2 * cos1 - cos2 * n1) / p };

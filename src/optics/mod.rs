@@ -1,10 +1,11 @@
-//! What happens to light at a point: incidence, polarisation, reflection, refraction, Fresnel's amplitudes.
+//! What happens to light at a point: incidence, polarisation, reflection, refraction, Fresnel's amplitudes, thin films.
 
 pub mod amplitudes;
 pub mod fresnel;
 pub mod incidence;
 pub mod mie;
 pub mod refraction;
+pub mod stack;
 pub mod stokes;
 
 pub use amplitudes::{Amplitudes, Split};

@@ -13,6 +13,7 @@
 //! Source: Born & Wolf, Principles of Optics, 7th ed., sec. 1.5.1.
 
 use glam::DVec3;
+use num_complex::Complex64;
 
 /// Specularly reflected direction: unit, away from the surface, z > 0.
 pub fn reflect(wi: DVec3) -> DVec3 {
@@ -36,6 +37,22 @@ pub fn refract(wi: DVec3, n1: f64, n2: f64) -> Option<DVec3> {
 /// (n2 cos2)^2, negative in total internal reflection; dimensionless.
 pub fn normal_component_squared(cos1: f64, n1: f64, n2: f64) -> f64 {
     (n2 - n1) * (n2 + n1) + (n1 * cos1) * (n1 * cos1)
+}
+
+/// Square root of `z`, Im z >= 0, with both parts >= 0: the wave that goes on and decays. Without the angle of a polar form,
+/// so that a transparent medium has a real or an imaginary root.
+pub fn root(z: Complex64) -> Complex64 {
+    if z.im == 0.0 {
+        return if z.re >= 0.0 { Complex64::new(z.re.sqrt(), 0.0) } else { Complex64::new(0.0, (-z.re).sqrt()) };
+    }
+    let size = z.re.hypot(z.im);
+    if z.re >= 0.0 {
+        let re = (0.5 * (size + z.re)).sqrt();
+        Complex64::new(re, 0.5 * z.im / re)
+    } else {
+        let im = (0.5 * (size - z.re)).sqrt();
+        Complex64::new(0.5 * z.im / im, im)
+    }
 }
 
 #[cfg(test)]

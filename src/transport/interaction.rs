@@ -7,7 +7,7 @@ use crate::geometry::{Crossing, Frame, Hit};
 use crate::math::Rng;
 use crate::math::rng::mix;
 use crate::optics::stokes::reframe;
-use crate::optics::{Incidence, Stokes, refraction};
+use crate::optics::{Amplitudes, Incidence, Stokes, refraction};
 use crate::packet::{Event, Packet};
 use crate::scene::{Crossed, Scene};
 use crate::surface::{Scattering, Shares, Surface};
@@ -82,7 +82,7 @@ fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
         bill.scattered[lane] = light.i * shares.scattered;
         let Some(split) = shares.split else { continue };
         let reflected = split.reflected.apply(light) * shares.specular[0];
-        let transmitted = split.transmitted.apply(light) * shares.specular[1];
+        let transmitted = transmit(meeting, lane, packet.ray.direction, split.transmitted, light) * shares.specular[1];
         if meeting.refracted.is_some() {
             bill.reflected[lane] = reflected;
             bill.transmitted[lane] = transmitted;
@@ -92,6 +92,24 @@ fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
         }
     }
     bill
+}
+
+/// What passes the surface of a lane, in the frame of s; some surfaces act along an axis of their own.
+fn transmit<const V: usize>(
+    meeting: &Meeting<V>,
+    lane: usize,
+    direction: DVec3,
+    passes: Amplitudes,
+    light: Stokes,
+) -> Stokes {
+    // The axis as the ray sees it; one that it runs along acts like any other across it.
+    let across = meeting.surfaces[lane].axis.and_then(|axis| axis.reject_from_normalized(direction).try_normalize());
+    let Some(across) = across else { return passes.apply(light) };
+    let mut lanes = [light];
+    reframe(&mut lanes, direction, meeting.frame.y, across);
+    lanes = lanes.map(|light| passes.apply(light));
+    reframe(&mut lanes, direction, across, meeting.frame.y);
+    lanes[0]
 }
 
 /// Books what stays here, from the models: a wrong sampler shows up in the residual.

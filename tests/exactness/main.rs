@@ -8,6 +8,7 @@ mod support;
 mod bodies;
 mod cases;
 mod coincidence;
+mod films;
 mod ghosts;
 mod interfaces;
 #[allow(dead_code, reason = "one bench, several test targets")]

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::Arc;
 use straylight::bsdf::{Abg, Bsdf, Lambertian, Side};
 use straylight::coating::{Bare, Coating, Ideal, Metal, Mirror};
 use straylight::detector::Grid;
@@ -32,7 +33,7 @@ fn bundle(theta: f64, f: impl Fn(DVec3) -> DVec3) -> (f64, f64) {
 
 /// A surface that is nothing but specular.
 fn polished(coating: impl Coating + 'static) -> Surface {
-    Surface::new("polished".into(), Some(Box::new(coating)), Vec::new(), Order::ScatterFirst, Scattering::On)
+    Surface::new("polished".into(), Some(Arc::new(coating)), Vec::new(), Order::ScatterFirst, Scattering::On)
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! `tests/data/verification/public.json` for single interfaces, dispersion and scatter.
 
 mod equations;
+mod films;
 mod interfaces;
 mod media;
 mod phases;

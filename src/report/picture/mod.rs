@@ -3,12 +3,14 @@
 mod axis;
 mod canvas;
 mod chart;
+mod curves;
 mod field;
 mod plot;
 mod scale;
 
 pub use axis::{Span, superscript, ticks};
 pub use chart::{Curve, Division, Ruler, chart};
+pub use curves::{Ink, Line, Panel, Stroke, curves};
 pub use field::{Cell, Field};
 pub use plot::{bare, png};
 pub use scale::{Mark, Palette, Scale};

@@ -46,7 +46,7 @@ pub fn png(map: &MapResult, system: &str) -> io::Result<Vec<u8>> {
 /// A canvas as a PNG.
 pub fn encode(canvas: &Canvas) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, canvas.width as u32, canvas.height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, canvas.width.unsigned_abs(), canvas.height.unsigned_abs());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.write_header()?.write_image_data(&canvas.pixels)?;

@@ -2,13 +2,16 @@
 
 use super::Shop;
 use super::assembly::Assembly;
+use super::coatings::Coatings;
 use super::models::Finish;
+use crate::coating::Side;
 use crate::error::Problem;
 use crate::scene::{Filling, Part, PartKind, Solid};
 use crate::surface::Surface;
 use crate::system::document as written;
 use crate::system::select::{self, Selector};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Parts, their surfaces, and the solids they bound.
 #[derive(Debug, Default)]
@@ -28,7 +31,7 @@ struct State {
 }
 
 /// Assigns every triangle to a part.
-pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling]) -> Assigned {
+pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling], coatings: &Coatings) -> Assigned {
     let (layers, states) = lay(shop, assembly);
     let mut assigned = Assigned::default();
     let mut finishes: Vec<Finish> = Vec::new();
@@ -43,7 +46,18 @@ pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling]) -> As
         for (state, label) in found.iter().zip(names) {
             let index = assigned.parts.len() as u32;
             let entries = &states[*state as usize].entries;
-            let part = part(shop, assembly, node, entries, label, solid, media, &mut finishes, &mut assigned.surfaces);
+            let part = part(
+                shop,
+                assembly,
+                node,
+                entries,
+                label,
+                solid,
+                media,
+                coatings,
+                &mut finishes,
+                &mut assigned.surfaces,
+            );
             assigned.parts.push(part);
             if entries.is_empty() {
                 assembly.unsaid.push(index);
@@ -206,6 +220,7 @@ fn part(
     label: String,
     solid: Option<u16>,
     media: &[Filling],
+    coatings: &Coatings,
     finishes: &mut Vec<Finish>,
     surfaces: &mut Vec<Surface>,
 ) -> Part {
@@ -218,13 +233,15 @@ fn part(
     };
     let transparent = kind != PartKind::Sheet;
     let mut side = |front: bool| {
-        let finish = finish(shop, entries, front, transparent);
+        let mut finish = finish(shop, entries, front, transparent);
+        let sided = finish.coating.as_ref().and_then(|name| coatings.get(name));
+        finish.side = sided.filter(|[a, b]| !Arc::ptr_eq(a, b)).map(|_| if front { Side::Front } else { Side::Back });
         if finish.is_unsaid() {
             unassigned(shop, assembly, node, &label);
         }
         let known = finishes.iter().position(|known| *known == finish);
         known.unwrap_or_else(|| {
-            surfaces.push(finish.surface(shop, media));
+            surfaces.push(finish.surface(shop, media, coatings));
             finishes.push(finish);
             finishes.len() - 1
         }) as u32

@@ -28,7 +28,7 @@ pub fn media(shop: &mut Shop) -> Vec<Filling> {
 }
 
 /// Vacuum wavelengths (m) that the sources have as lines; none if they are too many to be searched one by one.
-fn lines(document: &written::Document) -> Vec<f64> {
+pub fn lines(document: &written::Document) -> Vec<f64> {
     const MOST: usize = 8;
     let mut lines = Vec::new();
     for (_, source) in document.system.sources.iter() {
@@ -165,7 +165,7 @@ fn noted<T>(shop: &mut Shop, outcome: Result<T, Problem>, path: &str) -> Option<
 }
 
 /// What was made of the content of a file, or its problem noted: in the file, or where the document names the file.
-fn read<T>(shop: &mut Shop, outcome: Result<T, Problem>, file: &Path, path: &str) -> Option<T> {
+pub fn read<T>(shop: &mut Shop, outcome: Result<T, Problem>, file: &Path, path: &str) -> Option<T> {
     let whole = |problem: Problem| {
         let message = format!("{:?}: {}", file.display().to_string(), problem.message);
         Problem { message, ..problem }

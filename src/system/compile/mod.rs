@@ -4,6 +4,8 @@ pub mod against;
 mod alias;
 mod assembly;
 mod assign;
+mod coated;
+mod coatings;
 mod configure;
 mod exact;
 mod lights;
@@ -22,6 +24,7 @@ use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Roulette, Settings, Until};
 use assembly::Assembly;
+pub use coated::{Coated, coated};
 use glam::DVec3;
 pub use parts::{parts_of_file, parts_of_system};
 pub use scatterer::{Scatterer, scatterer};
@@ -125,10 +128,12 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let mut assembly = assembly::read(&mut shop);
     let media = media::media(&mut shop);
     exact::declare(&mut shop, &mut assembly);
-    let assigned = assign::assign(&mut shop, &mut assembly, &media);
+    let coatings = coatings::coatings(&mut shop, &media);
+    let assigned = assign::assign(&mut shop, &mut assembly, &media, &coatings);
     exact::mason::faces(&mut shop, &mut assembly);
     let watched = receivers::detectors(&mut shop, &assembly);
     let sources = lights::sources(&mut shop, &assembly);
+    coatings::ranges(&mut shop, &coatings, &sources);
     if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
         shop.fault("sources", Problem::error("nothing shines").expecting("at least one source"));
     }

@@ -1,30 +1,13 @@
-//! Coatings and finishes: from what the document says to what light meets.
+//! Finishes: from what the document says to what light meets.
 
 use super::Shop;
+use super::coatings::{Coatings, faces};
 use super::scatter::lobes;
-use crate::coating::{self, Coating};
+use crate::coating::Side;
 use crate::error::Problem;
 use crate::scene::Filling;
 use crate::surface::{Order, Scattering, Surface};
 use crate::system::document as written;
-use num_complex::Complex64;
-
-/// The interface that a coating names.
-pub fn coating(written: &written::Coating, media: &[Filling]) -> Box<dyn Coating> {
-    match written {
-        written::Coating::Fresnel => Box::new(coating::Bare),
-        written::Coating::Ideal { reflectance, transmittance } => {
-            Box::new(coating::Ideal { reflectance: *reflectance, transmittance: *transmittance })
-        }
-        written::Coating::Mirror { reflectance } => Box::new(coating::Mirror { reflectance: *reflectance }),
-        written::Coating::Metal { n, k } => Box::new(coating::Metal { index: Complex64::new(*n, *k) }),
-        written::Coating::Opaque { medium } => {
-            // Every name is defined: the document has been checked.
-            let filling = media.iter().find(|filling| filling.label == *medium).unwrap_or(&media[0]);
-            Box::new(coating::Opaque { medium: filling.medium.clone() })
-        }
-    }
-}
 
 /// What one side of a part is, with every field settled.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +18,8 @@ pub struct Finish {
     pub scatter: Option<String>,
     pub order: written::Order,
     pub scattering: written::Scattering,
+    /// The side it is on, of a coating that is not the same from both.
+    pub side: Option<Side>,
 }
 
 impl Finish {
@@ -55,12 +40,15 @@ impl Finish {
     }
 
     /// The surface that light meets.
-    pub fn surface(&self, shop: &mut Shop, media: &[Filling]) -> Surface {
-        let named = |name: &String| shop.document.system.coatings.get(name).cloned();
-        let specular = match &self.coating {
-            Some(name) => named(name),
-            None => self.specular.and_then(written::Specular::coating),
+    pub fn surface(&self, shop: &mut Shop, media: &[Filling], coatings: &Coatings) -> Surface {
+        let found = match &self.coating {
+            Some(name) => coatings.get(name).cloned(),
+            None => {
+                let written = self.specular.and_then(written::Specular::coating);
+                written.and_then(|written| faces(shop, &written, media, "surfaces"))
+            }
         };
+        let specular = found.map(|[front, back]| if self.side == Some(Side::Back) { back } else { front });
         let document = shop.document;
         let scatter = self.scatter.as_ref().and_then(|name| Some((name, document.system.scatter.get(name)?)));
         if let Some((name, _)) =
@@ -80,6 +68,6 @@ impl Finish {
             written::Scattering::On => Scattering::On,
             written::Scattering::Off => Scattering::Off,
         };
-        Surface::new(self.label(), specular.map(|written| coating(&written, media)), lobes, order, scattering)
+        Surface::new(self.label(), specular, lobes, order, scattering)
     }
 }

@@ -22,11 +22,12 @@ mod read;
 mod run;
 mod scatter;
 mod source;
+mod stack;
 mod surface;
 mod tree;
 
 pub use bulk::{Bulk, OverWavelength};
-pub use coating::{Coating, Specular};
+pub use coating::{Coating, Row, Specular};
 pub use configure::{About, Change, Replacement};
 pub use detector::{Bins, Detector, Quantity, Receiver};
 pub use element::{Body, Element, Optical};
@@ -39,6 +40,7 @@ pub use read::SECTIONS;
 pub use run::{Roulette, Run, Until};
 pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis, ScatterSide, Unmeasured};
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
+pub use stack::{Layer, Thickness};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 
 use crate::error::{Error, Problem, Span};
@@ -252,6 +254,9 @@ impl Document {
         }
         for (name, medium) in self.system.media.iter() {
             files.extend(medium.file().map(|file| (format!("media[{name:?}].file"), file)));
+        }
+        for (name, coating) in self.system.coatings.iter() {
+            files.extend(coating.file().map(|file| (format!("coatings[{name:?}].file"), file)));
         }
         for (name, scatter) in self.system.scatter.iter() {
             tables(scatter, &format!("scatter[{name:?}]"), &mut files);

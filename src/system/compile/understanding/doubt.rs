@@ -9,7 +9,7 @@ use crate::geometry::Hit;
 use crate::scene::{Filling, PartKind, Scene};
 use crate::source::Source;
 use crate::system::compile::assembly::Assembly;
-use crate::system::document::{Coating, Document};
+use crate::system::document::Document;
 use glam::DVec3;
 use num_complex::Complex64;
 use std::collections::BTreeSet;
@@ -67,11 +67,9 @@ fn sizes(assembly: &Assembly, note: Note) {
 /// Media that light meets, with data that end before the sources' wavelengths do.
 fn ranges(scene: &Scene, document: &Document, note: Note) {
     let mut used: BTreeSet<u16> = uses(scene).into_iter().flat_map(|(_, media)| media).collect();
-    let coated = document.system.coatings.iter().filter_map(|(_, coating)| match coating {
-        Coating::Opaque { medium } => scene.media.iter().position(|filling| filling.label == *medium),
-        _ => None,
-    });
-    used.extend(coated.map(|medium| medium as u16));
+    let coated = document.system.coatings.iter().flat_map(|(_, coating)| coating.media());
+    let place = |name: &str| scene.media.iter().position(|filling| filling.label == *name);
+    used.extend(coated.filter_map(place).map(|medium| medium as u16));
     for filling in used.iter().map(|&medium| &scene.media[medium as usize]) {
         for problem in scene.sources.iter().filter_map(|source| uncovered(filling, source)) {
             note(&format!("media[{:?}]", filling.label), problem);
@@ -152,7 +150,10 @@ fn contradictions(scene: &Scene, note: Note) {
             one != other && declared(one) && declared(other)
         };
         if contradict(false) || contradict(true) {
-            let what = format!("`{}` and `{}` lie on each other with different coatings", a.label, b.label);
+            let [one, other] = [a, b].map(|part| &scene.surfaces[part.surface[0][0] as usize].label);
+            let coatings =
+                if one == other { "the same coating, which would be there twice" } else { "different coatings" };
+            let what = format!("`{}` and `{}` lie on each other with {coatings}", a.label, b.label);
             let problem = Problem::error(what).expecting("a coating on one of the two faces, the other one Fresnel");
             note("surfaces", problem.hinting("or `gap: Air` if they do not touch optically".to_owned()));
         }

@@ -136,7 +136,7 @@ fn parts(scene: &Scene, assembly: &Assembly) -> Vec<PartFacts> {
 }
 
 /// Media in front of and behind a part that nothing touches.
-fn sides(scene: &Scene, part: &Part) -> [u16; 2] {
+pub(super) fn sides(scene: &Scene, part: &Part) -> [u16; 2] {
     match part.kind {
         PartKind::Face(solid) => [scene.ambient, scene.solids[solid as usize].medium],
         PartKind::Sheet => [scene.ambient; 2],

@@ -1,6 +1,7 @@
 //! What serde cannot see: ranges, names, contradictions. Everything is checked and everything wrong is reported.
 
 mod bulk;
+mod coating;
 mod light;
 mod optics;
 mod scatter;

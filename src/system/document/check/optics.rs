@@ -1,11 +1,9 @@
-//! Checks of media, coatings and surfaces.
+//! Checks of media and surfaces.
 
 use super::{Checker, Section};
 use crate::error::Problem;
 use crate::medium::catalog::Shelf;
-use crate::system::document::{
-    Coating, ExtrasValue, Finish, Medium, Predicate, Scattering, Selector, Specular, Surface,
-};
+use crate::system::document::{ExtrasValue, Finish, Medium, Predicate, Scattering, Selector, Specular, Surface};
 use std::path::Path;
 
 impl<'a> Checker<'a> {
@@ -81,31 +79,6 @@ impl<'a> Checker<'a> {
 
     pub(super) fn file(&mut self, file: &Path, path: &str) {
         self.not_empty(&file.display().to_string(), &format!("{path}.file"), "the name of the file");
-    }
-
-    pub(super) fn coatings(&mut self) {
-        let document = self.document;
-        for (name, coating) in document.system.coatings.iter() {
-            let path = format!("coatings[{name:?}]");
-            self.coating(coating, &path);
-            if let Coating::Opaque { medium } = coating {
-                self.refer(Section::Media, medium, &format!("{path}.medium"));
-            }
-        }
-    }
-
-    fn coating(&mut self, coating: &Coating, path: &str) {
-        match coating {
-            Coating::Fresnel | Coating::Opaque { .. } => {}
-            Coating::Ideal { reflectance, transmittance } => {
-                self.shares(&[("reflectance", *reflectance), ("transmittance", *transmittance)], path);
-            }
-            Coating::Mirror { reflectance } => self.fraction(*reflectance, &format!("{path}.reflectance")),
-            Coating::Metal { n, k } => {
-                self.positive(*n, &format!("{path}.n"));
-                self.not_negative(*k, &format!("{path}.k"));
-            }
-        }
     }
 
     pub(super) fn surfaces(&mut self) {
