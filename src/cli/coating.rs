@@ -195,8 +195,11 @@ impl Survey<'_> {
     }
 }
 
+/// R, T or A of s and p.
+type Share = fn(&Response) -> [f64; 2];
+
 fn panel(title: String, x: Span, points: Vec<(f64, Response)>) -> Panel {
-    let shares: [(Ink, fn(&Response) -> [f64; 2]); 3] =
+    let shares: [(Ink, Share); 3] =
         [(Ink::Grey, Response::absorbed), (Ink::Blue, |r| r.transmitted), (Ink::Red, |r| r.reflected)];
     let curves = shares.into_iter().flat_map(|(ink, share)| {
         let of = |pick: fn([f64; 2]) -> f64| points.iter().map(|(x, r)| [*x, pick(share(r))]).collect();

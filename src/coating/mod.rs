@@ -1,5 +1,8 @@
 //! Interfaces: what is specular at a surface. One model, one file.
 
+// A problem of an input is built once per run.
+#![allow(clippy::result_large_err)]
+
 pub mod bare;
 pub mod ideal;
 pub mod metal;

@@ -5,7 +5,7 @@ use crate::optics::{Incidence, refraction};
 use glam::DVec3;
 use num_complex::Complex64;
 
-/// Shares of the arriving power, [s, p], 0..1.
+/// Shares of the arriving power, s and p, 0..1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     pub reflected: [f64; 2],
@@ -13,7 +13,7 @@ pub struct Response {
 }
 
 impl Response {
-    /// Light of vacuum wavelength `wavelength` (m) that arrives at angle `theta` (rad, below pi/2) from index[0] towards index[1].
+    /// Light of vacuum wavelength `wavelength` (m) that arrives at angle `theta` (rad, below pi/2) from the first index towards the second.
     pub fn of(coating: &dyn Coating, index: [Complex64; 2], wavelength: f64, theta: f64) -> Response {
         let wi = DVec3::new(theta.sin(), 0.0, theta.cos());
         let split = coating.split(&Incidence { wi, wavelength, index });
@@ -28,7 +28,7 @@ impl Response {
         Response { reflected, transmitted }
     }
 
-    /// What stays in the coating, [s, p].
+    /// What stays in the coating, s and p.
     pub fn absorbed(&self) -> [f64; 2] {
         [0, 1].map(|k| 1.0 - self.reflected[k] - self.transmitted[k])
     }

@@ -10,7 +10,7 @@ use crate::optics::refraction::normal_component_squared;
 use crate::optics::{Amplitudes, Incidence, Split};
 use num_complex::Complex64;
 
-/// Fixed reflectances and transmittances, [s, p].
+/// Fixed reflectances and transmittances of s and p.
 #[derive(Clone, Copy, Debug)]
 pub struct Splitter {
     /// Power reflectances, 0..1.

@@ -18,7 +18,7 @@ use crate::optics::{Amplitudes, Incidence, Split};
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-pub use csv::parse;
+pub use self::csv::parse;
 
 /// Shares that are typed with some digits may exceed 1 by so much, dimensionless.
 const ROUNDING: f64 = 1e-6;

@@ -129,34 +129,38 @@ fn ideal(head: Line) -> Result<Entry, Problem> {
 }
 
 fn films(sections: &[Section], section: &Section) -> Result<Entry, Problem> {
-    let film = |row: &Line| {
-        let numbers = row.numbers(1).map_err(|problem| match row.words().count() {
-            5.. => row.fault("tapers of layers are not read"),
-            _ => problem,
-        })?;
-        let (thickness, absolute) = match numbers[..] {
-            [thickness] => (thickness, 0.0),
-            [thickness, absolute] | [thickness, absolute, 0.0] => (thickness, absolute),
-            [_, _, _, ..] => return Err(row.fault("loops of layers are not read")),
-            [] => return Err(row.fault("this layer has no thickness").expecting("`material thickness is_absolute`")),
-        };
-        if thickness < 0.0 {
-            return Err(row.fault(format!("a thickness of {thickness}")).expecting("0 or more"));
-        }
-        let thickness =
-            if absolute == 0.0 { Thickness::Waves(thickness) } else { Thickness::Length(thickness / MICROMETRES) };
-        let material = sections.iter().find(|section| section.is("MATE", row.word(0)));
-        let material = material.ok_or_else(|| {
-            let names = sections.iter().filter(|section| section.kind() == "MATE").map(|section| section.head.word(1));
-            let problem = row.fault(format!("no material {:?}", row.word(0)));
-            match did_you_mean(row.word(0), names) {
-                Some(close) => problem.hinting(format!("did you mean {close:?}?")),
-                None => problem.expecting("a name that a line `MATE name` of this file gives"),
-            }
-        })?;
-        Ok(Film { material: self::material(material)?, thickness })
+    section.rows.iter().map(|row| film(sections, *row)).collect::<Result<Vec<Film>, Problem>>().map(Entry::Films)
+}
+
+fn film(sections: &[Section], row: Line) -> Result<Film, Problem> {
+    // The fifth word would be the name of a taper.
+    if row.words().count() > 4 {
+        return Err(row.fault("tapers of layers are not read"));
+    }
+    let thickness = match row.numbers(1)?[..] {
+        [thickness] | [thickness, 0.0] | [thickness, 0.0, 0.0] => Thickness::Waves(thickness),
+        [thickness, _] | [thickness, _, 0.0] => Thickness::Length(thickness / MICROMETRES),
+        [] => return Err(row.fault("this layer has no thickness").expecting("`material thickness is_absolute`")),
+        _ => return Err(row.fault("loops of layers are not read")),
     };
-    section.rows.iter().map(film).collect::<Result<Vec<Film>, Problem>>().map(Entry::Films)
+    let (Thickness::Waves(size) | Thickness::Length(size)) = thickness;
+    if size < 0.0 {
+        return Err(row.fault("a thickness is not negative"));
+    }
+    Ok(Film { material: material(named(sections, row)?)?, thickness })
+}
+
+/// The material that a layer names.
+fn named<'a, 'b>(sections: &'b [Section<'a>], row: Line) -> Result<&'b Section<'a>, Problem> {
+    let name = row.word(0);
+    sections.iter().find(|section| section.is("MATE", name)).ok_or_else(|| {
+        let names = sections.iter().filter(|section| section.kind() == "MATE").map(|section| section.head.word(1));
+        let problem = row.fault(format!("no material {name:?}"));
+        match did_you_mean(name, names) {
+            Some(close) => problem.hinting(format!("did you mean {close:?}?")),
+            None => problem.expecting("a name that a line `MATE name` of this file gives"),
+        }
+    })
 }
 
 fn material(section: &Section) -> Result<Tabulated, Problem> {

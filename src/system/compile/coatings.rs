@@ -70,22 +70,23 @@ pub fn faces(shop: &mut Shop, written: &written::Coating, media: &[Filling], pat
             stack(shop, films, substrate.as_deref().map(filling), media)
         }
         written::Coating::Table { file, rows } => table(shop, file.as_deref(), rows.as_deref(), path)?,
-        written::Coating::Zemax { file, coating, design, substrate } => {
-            let text = agf::decode(&load(shop, file, path)?);
-            let found = media::read(shop, zemax::parse(&text, coating), file, path)?;
-            found.warnings.into_iter().for_each(|warning| shop.fault(path, warning));
-            match found.entry {
-                zemax::Entry::Ideal { reflectance, transmittance } => {
-                    alike(coating::Ideal { reflectance, transmittance })
-                }
-                zemax::Entry::Table(rows) => tabulated(shop, &rows, path)?,
-                zemax::Entry::Films(films) => {
-                    let films = zemax_films(shop, films, *design, path)?;
-                    stack(shop, films, substrate.as_deref().map(filling), media)
-                }
+        written::Coating::Zemax { file, coating, design, substrate } => match zemax_entry(shop, file, coating, path)? {
+            zemax::Entry::Ideal { reflectance, transmittance } => alike(coating::Ideal { reflectance, transmittance }),
+            zemax::Entry::Table(rows) => tabulated(shop, &rows, path)?,
+            zemax::Entry::Films(films) => {
+                let films = zemax_films(shop, films, *design, path)?;
+                stack(shop, films, substrate.as_deref().map(filling), media)
             }
-        }
+        },
     })
+}
+
+/// A coating of a COATING.DAT file, with what is worth a word about it noted.
+fn zemax_entry(shop: &mut Shop, file: &Path, coating: &str, path: &str) -> Option<zemax::Entry> {
+    let text = agf::decode(&load(shop, file, path)?);
+    let found = media::read(shop, zemax::parse(&text, coating), file, path)?;
+    found.warnings.into_iter().for_each(|warning| shop.fault(path, warning));
+    Some(found.entry)
 }
 
 /// A coating that is the same from both sides.
