@@ -11,9 +11,10 @@
 //!
 //! ScatterFirst: TIS is measured against the incident flux and the coating acts on the rest. Scaled: the BSDF is that of the
 //! uncoated shape and the coating scales it. Total: the table already contains the specular reflection.
-//! What remains is absorbed.
+//! What remains is absorbed. Particles on the surface ([`crate::bsdf::contamination`]) take their share of all of this and add lobes of their own.
 
 use crate::bsdf::Bsdf;
+use crate::bsdf::contamination::{Deposit, Dust};
 use crate::coating::Coating;
 use crate::math::Rng;
 use crate::optics::{Incidence, Split};
@@ -43,10 +44,15 @@ pub struct Surface {
     pub label: String,
     /// The specular part; `None`: absorbed.
     pub specular: Option<Arc<dyn Coating>>,
+    /// Its own, then those of the particles on it.
     pub lobes: Vec<Box<dyn Bsdf>>,
     pub order: Order,
     pub scattering: Scattering,
     opaque: bool,
+    /// Particles in front of it all.
+    dust: Option<Dust>,
+    /// Number of its own lobes.
+    own: usize,
     /// See [`Coating::axis`].
     pub axis: Option<DVec3>,
 }
@@ -74,7 +80,16 @@ impl Surface {
     ) -> Surface {
         let opaque = specular.as_ref().is_none_or(|c| c.opaque()) && !lobes.iter().any(|l| l.transmits());
         let axis = specular.as_ref().and_then(|coating| coating.axis());
-        Surface { label, specular, lobes, order, scattering, opaque, axis }
+        let own = lobes.len();
+        Surface { label, specular, lobes, order, scattering, opaque, dust: None, own, axis }
+    }
+
+    /// The same surface with a deposit on it; `behind`: light meets the surface first and the deposit behind it.
+    pub fn under(mut self, deposit: Arc<Deposit>, behind: bool) -> Surface {
+        let dust = Dust { deposit, coating: self.specular.clone(), behind: behind && !self.opaque };
+        self.lobes.extend(dust.clone().lobes());
+        self.dust = Some(dust);
+        self
     }
 
     /// True if light never passes: a reflection here is meant, not a ghost.
@@ -98,9 +113,9 @@ impl Surface {
         if self.lobes.is_empty() {
             return Shares { split, specular: [1.0; 2], lobes: [0.0; 2], scattered: 0.0 };
         }
-        let [back, through] = self.albedo(at);
+        let [back, through] = albedo(&self.lobes[..self.own], at);
         let all = back + through;
-        match self.order {
+        let clean = match self.order {
             Order::ScatterFirst => Shares { split, specular: [1.0 - all; 2], lobes: [1.0; 2], scattered: all },
             Order::Total => Shares { split, specular: [0.0, 1.0 - all], lobes: [1.0; 2], scattered: all },
             Order::Scaled => {
@@ -113,16 +128,28 @@ impl Surface {
                     scattered: r * back + t * through,
                 }
             }
-        }
+        };
+        let Some(dust) = &self.dust else { return clean };
+        // What the surface sends on passes the particles; what they scatter comes on top.
+        let kept = dust.keeps(at);
+        let by = |factors: [f64; 2]| [kept[0] * factors[0], kept[1] * factors[1]];
+        let lobes = by(clean.lobes);
+        let dusty: f64 = albedo(&self.lobes[self.own..], at).iter().sum();
+        let scattered = lobes[0] * back + lobes[1] * through + dusty;
+        Shares { split, specular: by(clean.specular), lobes, scattered }
     }
 
     /// Reflected and transmitted albedo of all lobes together, 0..1 each.
     pub fn albedo(&self, at: &Incidence) -> [f64; 2] {
-        let mut albedo = [0.0; 2];
-        for lobe in &self.lobes {
-            albedo[lobe.transmits() as usize] += lobe.albedo(at);
-        }
-        albedo
+        albedo(&self.lobes, at)
+    }
+
+    /// All lobes, each with the factor on its BSDF.
+    fn weighted<'a>(&'a self, shares: &'a Shares) -> impl Iterator<Item = (f64, &'a dyn Bsdf)> + 'a {
+        self.lobes.iter().enumerate().map(|(at, lobe)| {
+            let factor = if at < self.own { shares.lobes[lobe.transmits() as usize] } else { 1.0 };
+            (factor, lobe.as_ref())
+        })
     }
 
     /// Draws a scattered direction from the one mixture of all lobes. `None`: the draw left the hemispheres that light can
@@ -131,12 +158,12 @@ impl Surface {
         if let [lobe] = self.lobes.as_slice() {
             return lobe.sample(at, rng);
         }
-        let mut rest = rng.uniform();
-        let chosen = self.lobes.iter().find(|lobe| {
-            rest -= shares.chance(lobe.as_ref(), at);
+        let mut rest = rng.uniform() * shares.scattered;
+        let chosen = self.weighted(shares).find(|(factor, lobe)| {
+            rest -= factor * lobe.albedo(at);
             rest < 0.0
         });
-        chosen.or(self.lobes.last())?.sample(at, rng)
+        chosen.map(|(_, lobe)| lobe).or(self.lobes.last().map(Box::as_ref))?.sample(at, rng)
     }
 
     /// Density of `draw`'s directions, 1/sr.
@@ -144,20 +171,24 @@ impl Surface {
         if let [lobe] = self.lobes.as_slice() {
             return lobe.pdf(at, wo);
         }
-        self.lobes.iter().map(|lobe| shares.chance(lobe.as_ref(), at) * lobe.pdf(at, wo)).sum()
+        // A lobe is drawn from in proportion to its part of the scattered flux.
+        let part = |(factor, lobe): (f64, &dyn Bsdf)| factor * lobe.albedo(at) * lobe.pdf(at, wo);
+        self.weighted(shares).map(part).sum::<f64>() / shares.scattered
     }
 
     /// f |cos theta_s| of all lobes together as the coating lets it through, 1/sr: scattered flux per solid angle and
     /// incident flux.
     pub fn value(&self, at: &Incidence, shares: &Shares, wo: DVec3) -> f64 {
-        let f: f64 = self.lobes.iter().map(|lobe| shares.lobes[lobe.transmits() as usize] * lobe.eval(at, wo)).sum();
+        let f: f64 = self.weighted(shares).map(|(factor, lobe)| factor * lobe.eval(at, wo)).sum();
         f * wo.z.abs()
     }
 }
 
-impl Shares {
-    /// Probability that a lobe is the one drawn from: its part of the scattered flux.
-    fn chance(&self, lobe: &dyn Bsdf, at: &Incidence) -> f64 {
-        self.lobes[lobe.transmits() as usize] * lobe.albedo(at) / self.scattered
+/// Reflected and transmitted albedo of lobes together.
+fn albedo(lobes: &[Box<dyn Bsdf>], at: &Incidence) -> [f64; 2] {
+    let mut albedo = [0.0; 2];
+    for lobe in lobes {
+        albedo[lobe.transmits() as usize] += lobe.albedo(at);
     }
+    albedo
 }

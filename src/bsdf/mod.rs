@@ -5,6 +5,7 @@
 //! f |cos theta_s| dw times the incident flux.
 
 pub mod abg;
+pub mod contamination;
 pub mod cosine_power;
 pub mod csv_table;
 mod entries;

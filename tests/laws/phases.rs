@@ -18,7 +18,7 @@ fn henyey_greenstein(g: f64) -> HenyeyGreenstein {
 
 fn spheres(diameter: f64) -> Spheres {
     let clear = |n: f64| Constant::transparent(n);
-    Spheres::new(&clear(1.59), &clear(1.33), diameter, 1e-3, &[400e-9, 550e-9, 800e-9])
+    Spheres::filling(&clear(1.59), &clear(1.33), diameter, 1e-3, &[400e-9, 550e-9, 800e-9])
 }
 
 fn family() -> Vec<(String, Box<dyn Bulk>)> {
@@ -111,7 +111,7 @@ fn between_two_wavelengths_the_spheres_mix() {
 #[test]
 fn spheres_scatter_by_their_efficiency() {
     let absorbing = Constant { n: 1.59, loss: straylight::medium::Loss::Extinction(0.01) };
-    let model = Spheres::new(&absorbing, &Constant::transparent(1.33), 1e-6, 1e-3, &[LINE]);
+    let model = Spheres::filling(&absorbing, &Constant::transparent(1.33), 1e-6, 1e-3, &[LINE]);
     let sphere = Sphere::new(1e-6, absorbing.index(LINE), 1.33, LINE);
     assert!((model.coefficient(LINE) / (1.5e3 * sphere.scattering) - 1.0).abs() < 1e-12);
     assert!((model.absorption(LINE) / (1.5e3 * (sphere.extinction - sphere.scattering)) - 1.0).abs() < 1e-12);

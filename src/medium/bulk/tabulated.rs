@@ -3,7 +3,7 @@
 use super::{Bulk, Spectrum};
 use crate::math::Rng;
 use crate::math::table::{Discrete, linear};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// A density over the cosine in [-1, 1] that is linear between nodes.
 #[derive(Clone, Debug)]
@@ -48,6 +48,22 @@ impl Cosines {
         // Linear density a + (b - a) w on [0, 1]: its distribution is a quadratic in w, solved without cancellation.
         let w = v * (a + b) / (a + (a * a + v * (b * b - a * a)).max(0.0).sqrt());
         self.cosine[k] + w.clamp(0.0, 1.0) * (self.cosine[k + 1] - self.cosine[k])
+    }
+
+    /// Share of the light that goes into the hemisphere about a pole, `cosine` being that of the angle between the pole and the
+    /// way straight on: of a ring of scattering angle g about an axis at angle t from the pole, the part acos(-cot g cot t) / pi.
+    pub fn ahead(&self, cosine: f64) -> f64 {
+        let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+        let part = |c: f64| {
+            let s = ((1.0 - c) * (1.0 + c)).max(0.0).sqrt();
+            let reach = c * cosine;
+            if s * sine <= reach.abs() { f64::from(u8::from(reach > 0.0)) } else { (-reach / (s * sine)).acos() / PI }
+        };
+        let share = |k: usize| {
+            let ([x, y], [a, b]) = ([self.cosine[k], self.cosine[k + 1]], [self.phase[k], self.phase[k + 1]]);
+            TAU * 0.5 * (a + b) * (y - x) * part(0.5 * (x + y))
+        };
+        (0..self.cosine.len() - 1).map(share).sum()
     }
 
     /// Mean cosine.

@@ -235,7 +235,10 @@ fn part(
     let mut side = |front: bool| {
         let mut finish = finish(shop, entries, front, transparent);
         let sided = finish.coating.as_ref().and_then(|name| coatings.get(name));
-        finish.side = sided.filter(|[a, b]| !Arc::ptr_eq(a, b)).map(|_| if front { Side::Front } else { Side::Back });
+        let dusty = finish.scatter.as_ref().and_then(|name| shop.document.system.scatter.get(name));
+        let dusty = dusty.is_some_and(|model| model.contamination().is_some());
+        let faced = dusty || sided.is_some_and(|[a, b]| !Arc::ptr_eq(a, b));
+        finish.side = faced.then_some(if front { Side::Front } else { Side::Back });
         if finish.is_unsaid() {
             unassigned(shop, assembly, node, &label);
         }

@@ -6,7 +6,6 @@ use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::scene::Scene;
 use crate::system::document::Document;
 use num_complex::Complex64;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A coating and the media around it, front first.
@@ -51,7 +50,7 @@ pub fn coated(document: &Document, name: &str, between: Option<&[String; 2]>) ->
     if let Some(missing) = names.iter().find(|name| !labels.contains(&name.as_str())) {
         return Err(unknown("medium", missing, &labels));
     }
-    let mut shop = Shop { document, problems: Vec::new(), inputs: BTreeMap::new() };
+    let mut shop = Shop::new(document, Vec::new());
     let fillings = media::media(&mut shop);
     let faces = coatings::coatings(&mut shop, &fillings).remove(name);
     let Some(faces) = faces.filter(|_| !shop.problems.iter().any(|p| p.severity == Severity::Error)) else {

@@ -17,7 +17,7 @@ pub fn media(shop: &mut Shop) -> Vec<Filling> {
     let vacuum = Filling { label: VACUUM.into(), medium: empty() };
     let mut media = vec![vacuum];
     let lines = lines(shop.document);
-    let light = light(shop.document, &lines);
+    let light = light(shop.document, BULK_POINTS);
     for (name, written) in shop.document.system.media.iter() {
         // What cannot be read is noted, and the system refused; until then its place is kept.
         let medium = medium(shop, written, &light, &format!("media[{name:?}]"));
@@ -43,10 +43,13 @@ pub fn lines(document: &written::Document) -> Vec<f64> {
     if lines.len() > MOST { Vec::new() } else { lines }
 }
 
-/// Vacuum wavelengths (m, rising) at which what is costly is worked out: the lines of the sources, or points close together from
-/// the least to the greatest wavelength of all of them.
-fn light(document: &written::Document, lines: &[f64]) -> Vec<f64> {
-    const POINTS: u32 = 48;
+/// Wavelengths of a continuous spectrum at which scatter in media is worked out.
+const BULK_POINTS: u32 = 48;
+
+/// Vacuum wavelengths (m, rising) at which what is costly is worked out: the lines of the sources, and of continuous spectra as many
+/// `points` from the least to the greatest wavelength of all of them.
+pub fn light(document: &written::Document, points: u32) -> Vec<f64> {
+    let lines = lines(document);
     let band = |spectrum: &written::Spectrum| match spectrum {
         written::Spectrum::Line(_) => None,
         written::Spectrum::Lines(shares) if !lines.is_empty() || shares.is_empty() => None,
@@ -60,8 +63,8 @@ fn light(document: &written::Document, lines: &[f64]) -> Vec<f64> {
         document.system.sources.iter().filter_map(|(_, source)| band(&source.spectrum)).flatten().collect();
     let from = bands.iter().copied().fold(f64::INFINITY, f64::min);
     let to = bands.iter().copied().fold(0.0, f64::max);
-    let points = (0..POINTS).map(|i| from + (to - from) * f64::from(i) / f64::from(POINTS - 1));
-    let mut light: Vec<f64> = if bands.is_empty() { Vec::new() } else { points.collect() };
+    let between = (0..points).map(|i| from + (to - from) * f64::from(i) / f64::from(points - 1));
+    let mut light: Vec<f64> = if bands.is_empty() { Vec::new() } else { between.collect() };
     light.extend(lines);
     light.sort_by(f64::total_cmp);
     light.dedup();
@@ -147,7 +150,7 @@ fn bulk(
         }
         written::Bulk::Spheres { medium: spheres, diameter, fraction } => {
             let spheres = medium(shop, spheres, light, &format!("{path}.medium"))?;
-            Box::new(bulk::Spheres::new(spheres.as_ref(), host, diameter.0, *fraction, light))
+            Box::new(bulk::Spheres::filling(spheres.as_ref(), host, diameter.0, *fraction, light))
         }
     })
 }

@@ -19,6 +19,7 @@ pub mod understanding;
 
 use super::document::Document;
 use super::gltf::Node;
+use crate::bsdf::contamination::Deposit;
 use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
@@ -30,6 +31,7 @@ pub use parts::{parts_of_file, parts_of_system};
 pub use scatterer::{Scatterer, scatterer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
@@ -49,9 +51,15 @@ pub struct Shop<'a> {
     pub document: &'a Document,
     pub problems: Vec<Problem>,
     pub inputs: BTreeMap<String, String>,
+    /// Particles on surfaces, by the scatter model that holds them.
+    pub deposits: BTreeMap<String, Arc<Deposit>>,
 }
 
-impl Shop<'_> {
+impl<'a> Shop<'a> {
+    pub fn new(document: &'a Document, problems: Vec<Problem>) -> Shop<'a> {
+        Shop { document, problems, inputs: BTreeMap::new(), deposits: BTreeMap::new() }
+    }
+
     /// Notes a problem at a path of the document.
     pub fn fault(&mut self, path: &str, problem: Problem) {
         self.problems.push(self.document.problem(path, problem));
@@ -121,7 +129,7 @@ pub fn geometry(document: &Document) -> Result<Placed, Error> {
 }
 
 fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
-    let mut shop = Shop { document, problems: document.warnings.clone(), inputs: BTreeMap::new() };
+    let mut shop = Shop::new(document, document.warnings.clone());
     let system_file = document.path.file_name().map_or("system".into(), |name| name.to_string_lossy().into_owned());
     shop.inputs.insert(system_file, document.sha256.clone());
     shop.inputs.extend(document.included().map(|(name, sha256)| (name, sha256.to_owned())));

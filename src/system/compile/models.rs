@@ -2,7 +2,7 @@
 
 use super::Shop;
 use super::coatings::{Coatings, faces};
-use super::scatter::lobes;
+use super::scatter::{deposit, lobes};
 use crate::coating::Side;
 use crate::error::Problem;
 use crate::scene::Filling;
@@ -18,7 +18,7 @@ pub struct Finish {
     pub scatter: Option<String>,
     pub order: written::Order,
     pub scattering: written::Scattering,
-    /// The side it is on, of a coating that is not the same from both.
+    /// The side it is on, of a coating that is not the same from both, or if particles lie on the front.
     pub side: Option<Side>,
 }
 
@@ -68,6 +68,10 @@ impl Finish {
             written::Scattering::On => Scattering::On,
             written::Scattering::Off => Scattering::Off,
         };
-        Surface::new(self.label(), specular, lobes, order, scattering)
+        let surface = Surface::new(self.label(), specular, lobes, order, scattering);
+        match scatter.and_then(|(name, model)| deposit(shop, name, model, &format!("scatter[{name:?}]"))) {
+            Some(deposit) => surface.under(deposit, self.side == Some(Side::Back)),
+            None => surface,
+        }
     }
 }

@@ -6,13 +6,12 @@ use crate::system::document::{Geometry, Up};
 use crate::system::gltf::{self, Node};
 use crate::system::units::{Angles, LengthUnit, Position};
 use glam::{DAffine3, DVec3};
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The nodes of all geometry files of a system, placed in the world (m) and named as in the system, and warnings. Elements are not
 /// among them.
 pub fn parts_of_system(document: &Document) -> Result<(Vec<Node>, Vec<Problem>), Error> {
-    let mut shop = Shop { document, problems: document.warnings.clone(), inputs: BTreeMap::new() };
+    let mut shop = Shop::new(document, document.warnings.clone());
     let assembly = assembly::read(&mut shop);
     let problems = shop.problems;
     if problems.iter().any(Problem::is_error) {

@@ -1,13 +1,19 @@
 //! Scatter models: from what the document says to the lobes that light meets.
 
 use super::Shop;
-use super::media::load;
+use super::media::{self, load};
+use crate::bsdf::contamination::{Deposit, distribution};
 use crate::bsdf::{self, Bsdf};
 use crate::error::{Problem, Span};
+use crate::medium;
 use crate::system::document as written;
 use crate::system::units::{Frequency, PowerDensity};
 use std::f64::INFINITY;
 use std::path::Path;
+use std::sync::Arc;
+
+/// Wavelengths of a continuous spectrum at which particles are worked out: half a second each.
+const DEPOSIT_POINTS: u32 = 6;
 
 /// The lobes of a scatter model; tables are read from their files.
 pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box<dyn Bsdf>> {
@@ -43,6 +49,33 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
         }
         formula => lobe(formula).into_iter().collect(),
     }
+}
+
+/// The particles of a model, if it has some; made once for every name.
+pub fn deposit(shop: &mut Shop, name: &str, written: &written::Scatter, path: &str) -> Option<Arc<Deposit>> {
+    let written::Scatter::Contamination { level, slope, smallest, largest, bins, n, k } = written.contamination()?
+    else {
+        return None;
+    };
+    if let Some(known) = shop.deposits.get(name) {
+        return Some(known.clone());
+    }
+    let sizes = match bins {
+        // Counted, like the levels, on a tenth of a square metre.
+        Some(bins) => bins.iter().map(|(diameter, number)| (diameter.0, 10.0 * number)).collect(),
+        None => distribution(*level, *slope, [smallest.0, largest.0]),
+    };
+    let particles = medium::Constant { n: *n, loss: medium::Loss::Extinction(*k) };
+    let light = media::light(shop.document, DEPOSIT_POINTS);
+    let deposit = Arc::new(Deposit::new(&particles, &sizes, &light));
+    let opaque = deposit.extinction(light[0]) > 0.5;
+    if opaque {
+        let covered = format!("these particles cover {:.0} % of the surface", 100.0 * deposit.coverage);
+        let hint = "the layer is treated as dilute: no particle shades another";
+        shop.fault(path, Problem::warning(covered).hinting(hint.to_owned()));
+    }
+    shop.deposits.insert(name.to_owned(), deposit.clone());
+    Some(deposit)
 }
 
 /// The lobe of a model that is one formula; `None` if it scatters nothing.

@@ -8,7 +8,6 @@ use crate::optics::Incidence;
 use crate::system::document::Document;
 use glam::DVec3;
 use num_complex::Complex64;
-use std::collections::BTreeMap;
 
 /// A scatter model between two media at one wavelength.
 #[derive(Debug)]
@@ -53,7 +52,7 @@ pub fn scatterer(
     names: [Option<&str>; 2],
     wavelength: f64,
 ) -> Result<(Scatterer, Vec<Problem>), Error> {
-    let mut shop = Shop { document, problems: document.warnings.clone(), inputs: BTreeMap::new() };
+    let mut shop = Shop::new(document, document.warnings.clone());
     let models = &document.system.scatter;
     let written =
         models.get(name).ok_or_else(|| unknown("scatter model", name, &models.names().collect::<Vec<_>>()))?;

@@ -116,6 +116,28 @@ pub enum Scatter {
         #[serde(default)]
         unmeasured: Unmeasured,
     },
+    /// Particles on the surface: a dilute layer of spheres (Mie), on the front of a transparent body.
+    Contamination {
+        /// Cleanliness level of IEST-STD-CC1246, >= 1.
+        level: f64,
+        /// Slope of the distribution, dimensionless, > 0.
+        #[serde(default = "slope")]
+        slope: f64,
+        /// Least diameter, m.
+        #[serde(default = "smallest")]
+        smallest: Length,
+        /// Greatest diameter, m.
+        #[serde(default = "largest")]
+        largest: Length,
+        /// Diameters (m) and numbers per 0.1 m2 instead of level, slope and limits.
+        bins: Option<Vec<(Length, f64)>>,
+        /// Refractive index of the particles, > 0.
+        #[serde(default = "dust")]
+        n: f64,
+        /// Extinction coefficient of the particles, >= 0.
+        #[serde(default = "soot")]
+        k: f64,
+    },
     /// Several models at once: their BSDFs add.
     Sum(Vec<Scatter>),
 }
@@ -204,6 +226,15 @@ pub enum Roughness {
 }
 
 impl Scatter {
+    /// The particles of this model, if it has some.
+    pub fn contamination(&self) -> Option<&Scatter> {
+        match self {
+            Scatter::Contamination { .. } => Some(self),
+            Scatter::Sum(parts) => parts.iter().find_map(Scatter::contamination),
+            _ => None,
+        }
+    }
+
     /// True if a part of it is the scatter of a shape alone, to be scaled by the reflectance and transmittance of the coating.
     pub fn is_of_shape(&self) -> bool {
         match self {
@@ -216,4 +247,27 @@ impl Scatter {
 
 fn one() -> f64 {
     1.0
+}
+
+/// The standard's.
+fn slope() -> f64 {
+    0.926
+}
+
+fn smallest() -> Length {
+    Length(1e-6)
+}
+
+fn largest() -> Length {
+    Length(200e-6)
+}
+
+/// Of house dust in the visible.
+fn dust() -> f64 {
+    1.53
+}
+
+/// Of house dust in the visible.
+fn soot() -> f64 {
+    0.001
 }

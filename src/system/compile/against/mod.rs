@@ -101,7 +101,7 @@ struct State {
 
 impl State {
     fn of(document: &Document, entries: &Document) -> Result<State, Error> {
-        let mut shop = Shop { document, problems: Vec::new(), inputs: BTreeMap::new() };
+        let mut shop = Shop::new(document, Vec::new());
         let assembly = assembly::read(&mut shop);
         if shop.problems.iter().any(Problem::is_error) {
             return Err(Error::Input(shop.problems));

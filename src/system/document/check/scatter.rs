@@ -63,13 +63,33 @@ impl Checker<'_> {
                 self.file(file, path);
                 self.not_negative(*scale, &format!("{path}.scale"));
             }
+            Scatter::Contamination { .. } => self.contamination(scatter, path),
             Scatter::Sum(parts) => {
                 self.require(!parts.is_empty(), path, || Problem::error("this sum has no parts"));
+                let layers = parts.iter().filter(|part| part.contamination().is_some()).count();
+                self.require(layers < 2, path, || {
+                    Problem::error("particles lie on it twice").expecting("one `Contamination`, of all particles")
+                });
                 for (at, part) in parts.iter().enumerate() {
                     self.scatter_model(part, &format!("{path}[{at}]"));
                 }
             }
         }
+    }
+
+    fn contamination(&mut self, scatter: &Scatter, path: &str) {
+        let Scatter::Contamination { level, slope, smallest, largest, bins, n, k } = scatter else { return };
+        self.range(*level >= 1.0 && level.is_finite(), &format!("{path}.level"), "a level of at least 1");
+        self.positive(*slope, &format!("{path}.slope"));
+        let sizes = (1e-8..1e-2).contains(&smallest.0) && smallest.0 < largest.0 && largest.0 <= 1e-3;
+        self.range(sizes, &format!("{path}.smallest"), "diameters from 10 nm to 1 mm, the smallest below the largest");
+        for (at, (diameter, number)) in bins.iter().flatten().enumerate() {
+            let good = (1e-8..=1e-3).contains(&diameter.0);
+            self.range(good, &format!("{path}.bins[{at}][0]"), "a diameter from 10 nm to 1 mm");
+            self.not_negative(*number, &format!("{path}.bins[{at}][1]"));
+        }
+        self.positive(*n, &format!("{path}.n"));
+        self.not_negative(*k, &format!("{path}.k"));
     }
 
     fn roughness(&mut self, roughness: &Roughness, slope: f64, path: &str) {
