@@ -296,7 +296,7 @@ fn every_sampler_draws_its_density() {
             let expected = if name.contains("anodize") {
                 over_points(at, &|wo| model.pdf(at, wo))
             } else if slack(name) == 1e-3 {
-                over_bins(at, &Rules::new(30, 24), &|wo| model.pdf(at, wo))
+                over_bins(at, &Rules::new(20, 16), &|wo| model.pdf(at, wo))
             } else {
                 over_bins(at, &Rules::new(10, 12), &|wo| model.pdf(at, wo))
             };

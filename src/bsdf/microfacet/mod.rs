@@ -143,7 +143,7 @@ impl Shape {
 
     /// The albedo by quadrature over the normals that are seen, at `theta` rad of incidence.
     fn albedo(&self, rules: &Rules, index: [Complex64; 2], theta: f64) -> f64 {
-        let wi = DVec3::new(theta.sin(), 0.0, theta.cos().max(1e-9));
+        let wi = DVec3::new(theta.sin(), 0.0, theta.cos().max(1e-7));
         let weight = |m: DVec3| self.leave(wi, index, m).map_or(0.0, |wo| self.weight(wi, index, m, wo));
         // Facets whose light goes to the other side, and those that reflect totally, are apart by a step and by a root.
         let regime = |m: DVec3| {
