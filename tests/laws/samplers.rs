@@ -81,11 +81,11 @@ fn lit(model: &dyn Bsdf, all: impl Iterator<Item = Incidence>) -> Vec<Incidence>
     all.filter(|at| model.albedo(at) > 0.0).collect()
 }
 
-/// True if the bins and their quadrature resolve the model: not what facets pass far beyond the critical angle, a thousandth of the light
+/// True if the bins and their quadrature resolve the model: not what facets pass far beyond the critical angle, a hundredth of the light
 /// in shapes with edges across the bins.
 pub fn resolved(name: &str, at: &Incidence) -> bool {
     let facets = name.starts_with("ggx t") || name.starts_with("beckmann t");
-    !(facets && at.index[0].re > at.index[1].re && at.wi.z < 0.2)
+    !(facets && at.index[0].re > at.index[1].re && at.wi.z < 0.45)
 }
 
 /// What the tables of a model's albedo may be off by, relative.

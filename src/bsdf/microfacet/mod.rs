@@ -60,7 +60,8 @@ struct Shape {
 }
 
 impl Microfacet {
-    /// A lobe of roughness `alpha` (0.001..1). Its tables of albedo are worked out where they are first needed, 10 to 100 ms each.
+    /// A lobe of roughness `alpha` (0.001..1). Its tables of albedo are worked out where they are first needed: 0.2 s
+    /// each at alpha = 0.3, 2 s at 0.01; two for each pair of indices that light meets.
     pub fn new(distribution: Distribution, alpha: f64, facets: Facets, side: Side) -> Microfacet {
         Microfacet { shape: Shape { distribution, alpha, facets, side }, albedo: Tables::new(alpha) }
     }
