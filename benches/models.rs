@@ -3,7 +3,10 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use num_complex::Complex64;
 use std::hint::black_box;
-use straylight::bsdf::{Abg, Bsdf, Lambertian, Side, Tabulated, speos};
+use straylight::bsdf::{
+    Abg, Axis, Bsdf, CosinePower, Distribution, Facets, Harvey, KCorrelation, Lambertian, Microfacet, OrenNayar,
+    Polish, Side, Tabulated, speos,
+};
 use straylight::coating::{Bare, Coating};
 use straylight::math::Rng;
 use straylight::optics::Incidence;
@@ -28,12 +31,20 @@ fn weight(model: &dyn Bsdf, at: &Incidence, rng: &mut Rng) -> f64 {
 }
 
 fn models(criterion: &mut Criterion) {
-    let models: [(&str, Box<dyn Bsdf>); 5] = [
+    let mirror = KCorrelation::new(1e-9, [0.0, 1e6], 20e-6, 2.5);
+    let facets = |side| Microfacet::new(Distribution::Ggx, 0.3, Facets::Interface, side);
+    let models: [(&str, Box<dyn Bsdf>); 11] = [
         ("lambertian", Box::new(Lambertian { reflectance: 0.3, transmittance: 0.0 })),
         ("abg", Box::new(Abg::new(0.0025, 0.001, 1.8, Side::Reflect))),
         ("abg, g 2", Box::new(Abg::new(0.0025, 0.001, 2.0, Side::Reflect))),
         ("abg, transmitted", Box::new(Abg::new(0.0025, 0.001, 1.8, Side::Transmit))),
         ("table", Box::new(table())),
+        ("harvey", Box::new(Harvey::new(0.1, 0.01, -1.5, Side::Reflect))),
+        ("cosine power", Box::new(CosinePower::new(0.2, 30.0, Axis::Specular))),
+        ("oren-nayar", Box::new(OrenNayar::new(0.8, 0.3))),
+        ("polish", Box::new(Polish::new(mirror, Side::Reflect))),
+        ("facets", Box::new(facets(Side::Reflect))),
+        ("facets, transmitted", Box::new(facets(Side::Transmit))),
     ];
     let glass = incidences(Complex64::new(1.5168, 0.0));
     let mut group = criterion.benchmark_group("models");

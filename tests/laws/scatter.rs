@@ -1,7 +1,7 @@
 //! Scatter models: reference numbers, albedo, reciprocity.
 
 use crate::reference::{case, close, number, values};
-use crate::samplers::{family, incidences, integral, over_cells, slack};
+use crate::samplers::{family, incidences, integral, over_cells, resolved, slack};
 use glam::DVec3;
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -78,7 +78,7 @@ fn sca_05_points_and_their_swap() {
 #[test]
 fn the_albedo_is_the_integral_of_the_bsdf() {
     for (name, model) in family() {
-        for at in incidences(&*model) {
+        for at in incidences(&*model).into_iter().filter(|at| resolved(name, at)) {
             let flux = |wo: DVec3| model.eval(&at, wo) * wo.z.abs();
             let table = name.contains("anodize");
             let got = if table { over_cells(flux) } else { integral(&at, flux) };

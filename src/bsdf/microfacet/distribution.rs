@@ -124,10 +124,10 @@ pub struct Rules {
 const PROBES: usize = 16;
 
 impl Rules {
-    /// `n` points along and across, 2 `n` turns.
+    /// `n` points along, 3 `n` across, where kinks are not looked for, and 2 `n` turns.
     pub fn new(n: usize) -> Rules {
         let turn = |k: usize| (PI * (k as f64 + 0.5) / (2 * n) as f64).sin_cos();
-        Rules { along: GaussLegendre::new(n), across: GaussLegendre::new(n), turns: (0..2 * n).map(turn).collect() }
+        Rules { along: GaussLegendre::new(n), across: GaussLegendre::new(3 * n), turns: (0..2 * n).map(turn).collect() }
     }
 
     /// Integral of `f` from `from` to `to`, taken apart where `regime` changes; roots at the ends of a piece are drawn out by a cosine.

@@ -49,7 +49,7 @@ impl Flux {
     /// G at `k` = n_s / lambda (1/m) and `u` = |beta_0|, m^4.
     pub fn at(&self, psd: &impl Profile, k: f64, u: f64) -> f64 {
         let place = (k.ln() - FIRST) / ROW;
-        if !(place >= 0.0 && place <= (ROWS - 1) as f64) {
+        if !(0.0..=(ROWS - 1) as f64).contains(&place) {
             return integrate(psd, &GaussLegendre::new(16), k, u);
         }
         let (first, weights) = cubic(place, ROWS);

@@ -7,7 +7,7 @@
 //!
 //! It is tabulated in ln n and in zeta = asinh((rho/n - 1) / c), c about the width of the lobe: the horizon eats a lobe
 //! within about its own width and by the logarithm of the distance outside it, so its logarithm is smooth in zeta. Local
-//! cubics through 4 x 4 entries; relative error below 1e-5 (measured beside this code).
+//! cubics through 4 x 4 entries; relative error below 1e-5 (or 3e-7 of the lobe's flux, far outside it; measured beside this code).
 
 use super::{Profile, Side};
 use crate::math::quadrature::GaussLegendre;
@@ -142,8 +142,8 @@ mod tests {
                 let n = if k % 3 == 0 { 1.0 } else { 1.0 + 0.0041 * k as f64 };
                 let rho = if side == Side::Reflect || k % 2 == 0 { n * sine } else { n * (2.0 - sine) };
                 let (a, direct) = (tis.at(profile, rho, n), integrate(profile, &rule, rho, n));
-                let least = 1e-6 * profile.integral(n);
-                assert!((a - direct).abs() < 1e-5 * direct.max(least), "{profile:?} rho {rho} n {n}: {a} {direct}");
+                let allowed = 1e-5 * direct + 3e-7 * TAU * profile.integral(n);
+                assert!((a - direct).abs() < allowed, "{profile:?} rho {rho} n {n}: {a} {direct}");
             }
         }
     }

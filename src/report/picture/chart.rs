@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, LETTER, Weight, length};
 use super::plot::encode;
-use super::{superscript, ticks};
+use super::ticks;
 use std::io;
 
 /// Size of the plot, and space left, above, right (legend) and below it, pixels.
@@ -87,8 +87,7 @@ impl Span {
             Division::Decades => {
                 let (from, to) = (self.from as i32, self.to as i32);
                 let step = ((to - from) as usize).div_ceil(count).max(1);
-                let mark =
-                    |power: i32| (f64::from(power - from) / f64::from(to - from), format!("10{}", superscript(power)));
+                let mark = |power: i32| (f64::from(power - from) / f64::from(to - from), format!("1e{power}"));
                 (from..=to).step_by(step).map(mark).collect()
             }
         }
@@ -156,7 +155,7 @@ mod tests {
         let span = Span::of(Division::Decades, [3e-5, 0.0, 0.2, f64::NAN].into_iter());
         assert_eq!((span.from, span.to), (-5.0, 0.0));
         assert_eq!(span.place(0.0), None);
-        assert_eq!(span.marks(7).last().map(|mark| mark.1.clone()), Some("10⁰".into()));
+        assert_eq!(span.marks(7).last().map(|mark| mark.1.clone()), Some("1e0".into()));
         let one = Span::of(Division::Decades, [1e-3].into_iter());
         assert!(one.place(1e-3).is_some());
     }

@@ -8,7 +8,6 @@ use crate::error::{Problem, Span};
 use crate::medium;
 use crate::system::document as written;
 use crate::system::units::{Frequency, PowerDensity};
-use std::f64::INFINITY;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -107,7 +106,7 @@ fn lobe(formula: &written::Scatter) -> Option<Box<dyn Bsdf>> {
 /// `None` for a perfect surface.
 fn correlation(rms: &written::Roughness, b: f64, s: f64) -> Option<bsdf::KCorrelation> {
     let (rms, band) = match rms {
-        written::Roughness::Total(rms) => (rms.0, [0.0, INFINITY]),
+        written::Roughness::Total(rms) => (rms.0, [0.0, f64::INFINITY]),
         written::Roughness::Band { rms, from, to } => (rms.0, [from.0, to.0]),
     };
     (rms > 0.0).then(|| bsdf::KCorrelation::new(rms, band, b, s))
