@@ -92,8 +92,15 @@ fn summary(name: &str, model: &Scatterer) -> String {
     let rms = model
         .rms
         .map_or(String::new(), |rms| format!("  rms height   {} nm over 0 .. 1/wavelength\n", digits(1e9 * rms, 5)));
+    let particles = model.particles.as_ref().map_or(String::new(), |deposit| {
+        format!(
+            "  particles    cover {} %, take {} % of the light that crosses them; here they lie on a perfect mirror\n",
+            digits(100.0 * deposit.coverage, 4),
+            digits(100.0 * deposit.extinction(model.wavelength), 4)
+        )
+    });
     format!(
-        "{name}\n  wavelength   {} nm\n  index        {indices}\n{rms}{}",
+        "{name}\n  wavelength   {} nm\n  index        {indices}\n{rms}{particles}{}",
         digits(1e9 * model.wavelength, 7),
         table.text()
     )

@@ -52,29 +52,33 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
 
 /// The particles of a model, if it has some; made once for every name.
 pub fn deposit(shop: &mut Shop, name: &str, written: &written::Scatter, path: &str) -> Option<Arc<Deposit>> {
-    let written::Scatter::Contamination { level, slope, smallest, largest, bins, n, k } = written.contamination()?
-    else {
-        return None;
-    };
     if let Some(known) = shop.deposits.get(name) {
         return Some(known.clone());
     }
-    let sizes = match bins {
-        // Counted, like the levels, on a tenth of a square metre.
-        Some(bins) => bins.iter().map(|(diameter, number)| (diameter.0, 10.0 * number)).collect(),
-        None => distribution(*level, *slope, [smallest.0, largest.0]),
-    };
-    let particles = medium::Constant { n: *n, loss: medium::Loss::Extinction(*k) };
     let light = media::light(shop.document, DEPOSIT_POINTS);
-    let deposit = Arc::new(Deposit::new(&particles, &sizes, &light));
-    let opaque = deposit.extinction(light[0]) > 0.5;
-    if opaque {
+    let deposit = Arc::new(particles(written, &light)?);
+    if deposit.extinction(light[0]) > 0.5 {
         let covered = format!("these particles cover {:.0} % of the surface", 100.0 * deposit.coverage);
         let hint = "the layer is treated as dilute: no particle shades another";
         shop.fault(path, Problem::warning(covered).hinting(hint.to_owned()));
     }
     shop.deposits.insert(name.to_owned(), deposit.clone());
     Some(deposit)
+}
+
+/// The particles of a model, worked out at these vacuum wavelengths (m, rising).
+pub fn particles(written: &written::Scatter, light: &[f64]) -> Option<Deposit> {
+    let written::Scatter::Contamination { level, slope, smallest, largest, bins, n, k } = written.contamination()?
+    else {
+        return None;
+    };
+    let sizes = match bins {
+        // Counted, like the levels, on a tenth of a square metre.
+        Some(bins) => bins.iter().map(|(diameter, number)| (diameter.0, 10.0 * number)).collect(),
+        None => distribution(*level, *slope, [smallest.0, largest.0]),
+    };
+    let dust = medium::Constant { n: *n, loss: medium::Loss::Extinction(*k) };
+    Some(Deposit::new(&dust, &sizes, light))
 }
 
 /// The lobe of a model that is one formula; `None` if it scatters nothing.

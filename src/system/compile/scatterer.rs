@@ -1,13 +1,16 @@
 //! One scatter model by itself, for who wants to see what it does.
 
-use super::scatter::{lobes, rms};
+use super::scatter::{lobes, particles, rms};
 use super::{Shop, media};
 use crate::bsdf::Bsdf;
+use crate::bsdf::contamination::{Deposit, Dust};
+use crate::coating::Mirror;
 use crate::error::{Error, Problem, did_you_mean, printable};
 use crate::optics::Incidence;
 use crate::system::document::Document;
 use glam::DVec3;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// A scatter model between two media at one wavelength.
 #[derive(Debug)]
@@ -19,6 +22,8 @@ pub struct Scatterer {
     pub wavelength: f64,
     /// Rms height over the spatial frequencies 0 to 1/wavelength of a polished surface, m.
     pub rms: Option<f64>,
+    /// Particles, drawn as they would lie on a perfect mirror.
+    pub particles: Option<Arc<Deposit>>,
 }
 
 impl Scatterer {
@@ -57,7 +62,7 @@ pub fn scatterer(
     let written =
         models.get(name).ok_or_else(|| unknown("scatter model", name, &models.names().collect::<Vec<_>>()))?;
     let media = media::media(&mut shop);
-    let lobes = lobes(&mut shop, written, &format!("scatter[{name:?}]"));
+    let mut lobes = lobes(&mut shop, written, &format!("scatter[{name:?}]"));
     if shop.problems.iter().any(Problem::is_error) {
         return Err(Error::Input(shop.problems));
     }
@@ -70,7 +75,12 @@ pub fn scatterer(
     };
     let [here, beyond] = names;
     let index = [medium(here)?, medium(beyond)?].map(|filling| filling.medium.index(wavelength));
-    Ok((Scatterer { lobes, index, wavelength, rms: rms(written, wavelength) }, shop.problems))
+    let particles = particles(written, &[wavelength]).map(Arc::new);
+    if let Some(deposit) = &particles {
+        let mirror = Arc::new(Mirror { reflectance: 1.0 });
+        lobes.extend(Dust { deposit: deposit.clone(), coating: Some(mirror), behind: false }.lobes());
+    }
+    Ok((Scatterer { lobes, index, wavelength, rms: rms(written, wavelength), particles }, shop.problems))
 }
 
 fn unknown(what: &str, name: &str, known: &[&str]) -> Error {
