@@ -3,10 +3,11 @@
 use super::scatter::{lobes, particles, rms};
 use super::{Shop, media};
 use crate::bsdf::Bsdf;
-use crate::bsdf::contamination::{Deposit, Dust};
+use crate::bsdf::contamination::Deposit;
 use crate::coating::Mirror;
 use crate::error::{Error, Problem, did_you_mean, printable};
 use crate::optics::Incidence;
+use crate::surface::dust::Dust;
 use crate::system::document::Document;
 use glam::DVec3;
 use num_complex::Complex64;

@@ -11,13 +11,16 @@
 //!
 //! ScatterFirst: TIS is measured against the incident flux and the coating acts on the rest. Scaled: the BSDF is that of the
 //! uncoated shape and the coating scales it. Total: the table already contains the specular reflection.
-//! What remains is absorbed. Particles on the surface ([`crate::bsdf::contamination`]) take their share of all of this and add lobes of their own.
+//! What remains is absorbed. Particles on the surface ([`dust`]) take their share of all of this and add lobes of their own.
+
+pub mod dust;
 
 use crate::bsdf::Bsdf;
-use crate::bsdf::contamination::{Deposit, Dust};
+use crate::bsdf::contamination::Deposit;
 use crate::coating::Coating;
 use crate::math::Rng;
 use crate::optics::{Incidence, Split};
+use dust::Dust;
 use glam::DVec3;
 use std::sync::Arc;
 
