@@ -5,8 +5,9 @@ use glam::DVec3;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use straylight::coating::{Bare, Coating, Ideal, Metal, Mirror};
+use straylight::geometry::Frame;
 use straylight::math::quadrature::GaussLegendre;
-use straylight::optics::refraction::refract;
+use straylight::optics::refraction::{self, refract};
 use straylight::optics::{Incidence, Split, Stokes, fresnel};
 
 fn real(n: f64) -> Complex64 {
@@ -195,4 +196,25 @@ fn total_reflection_reflects_all_and_turns_linear_light_elliptic() {
     let (sin, cos) = 50f64.to_radians().sin_cos();
     let half = (cos * (sin * sin - 1.0 / (1.5168f64 * 1.5168)).sqrt() / (sin * sin)).atan();
     close((split.reflected.s / split.reflected.p).arg().abs(), 2.0 * half, 1e-12, "phase between s and p");
+}
+
+/// What a normal that is not the surface's own would do: the rays it sends off do not keep their etendue. Here every normal is the surface's
+/// own, of a facet or of an exact shape, and the factor is 1 (RAD-05).
+#[test]
+fn adj_02_a_tilted_normal_breaks_etendue() {
+    for value in values(&case("ADJ-02")) {
+        let [angle, tilt] = ["theta_i_deg", "tilt_deg"].map(|name| number(&value, name).to_radians());
+        let wi = DVec3::new(-angle.sin(), 0.0, angle.cos());
+        let normal = DVec3::new(tilt.sin(), 0.0, tilt.cos());
+        let frame = Frame::from_z_x(normal, wi);
+        let wo = frame.to_world(refraction::reflect(frame.to_local(wi)));
+        let wanted = value["wo"].as_array().expect("a direction");
+        for (found, wanted) in wo.to_array().into_iter().zip(wanted) {
+            close(found, wanted.as_f64().expect("a number"), 1e-12, "ADJ-02 direction");
+        }
+        let adjoint = wi.dot(normal) * wo.z / (wi.z * wo.dot(normal));
+        for (found, name) in [(wo.z / wi.z, "etendue_factor_cos_o_g_over_cos_i_g"), (adjoint, "veach_adjoint_factor")] {
+            close(found / number(&value, name), 1.0, 1e-12, &format!("ADJ-02 {name}"));
+        }
+    }
 }
