@@ -1,12 +1,17 @@
 //! A coating's table as comma-separated values.
 //!
-//! The first line names the columns, in any order: `wavelength_nm` or `wavelength_um`, `angle_deg`, `rs`, `rp`, `ts`, `tp` (0..1),
-//! and, if known, `phase_rs_deg`, `phase_rp_deg`, `phase_ts_deg`, `phase_tp_deg`. Lines that begin with `#` are comments.
+//! The first line names the columns, in any order: `wavelength_nm` or `wavelength_um`, `angle_deg` (else the same at all angles), and the
+//! shares (0..1) `rs`, `rp`, `ts`, `tp`, or for both polarisations `reflectance`, `transmittance` (else nothing passes), or the same in
+//! percent as `reflectance_percent`, `transmittance_percent`; and, if known, `phase_rs_deg`, `phase_rp_deg`, `phase_ts_deg`,
+//! `phase_tp_deg`. Lines that begin with `#` are comments.
 
 use super::{MIRROR, Row};
 use crate::error::{Problem, Span};
 
 const SHARES: [&str; 4] = ["rs", "rp", "ts", "tp"];
+/// Columns for both polarisations, and the size of their unit.
+const MEANS: [[(&str, f64); 2]; 2] =
+    [[("reflectance", 1.0), ("reflectance_percent", 0.01)], [("transmittance", 1.0), ("transmittance_percent", 0.01)]];
 const PHASES: [&str; 4] = ["phase_rs_deg", "phase_rp_deg", "phase_ts_deg", "phase_tp_deg"];
 /// More faults of one file made one mistake many times.
 const MOST: usize = 20;
@@ -15,8 +20,10 @@ const MOST: usize = 20;
 struct Columns {
     /// And the size of its unit, m.
     wavelength: (usize, f64),
-    angle: usize,
-    shares: [usize; 4],
+    /// `None`: the same at all angles.
+    angle: Option<usize>,
+    /// And the size of its unit; `None`: nothing.
+    shares: [Option<(usize, f64)>; 4],
     phases: [Option<usize>; 4],
 }
 
@@ -43,8 +50,8 @@ pub fn parse(text: &str) -> Result<Vec<Row>, Vec<Problem>> {
 }
 
 fn columns(header: &csv::StringRecord) -> Result<Columns, Problem> {
-    let known = SHARES.iter().chain(&PHASES).chain(&["wavelength_nm", "wavelength_um", "angle_deg"]);
-    let known: Vec<&str> = known.copied().collect();
+    let known = ["wavelength_nm", "wavelength_um", "angle_deg"].into_iter().chain(SHARES).chain(PHASES);
+    let known: Vec<&str> = known.chain(MEANS.into_iter().flatten().map(|(name, _)| name)).collect();
     if let Some(name) = header.iter().find(|name| !known.contains(name)) {
         let problem = Problem::error(format!("there is no column {name:?}"));
         return Err(problem.expecting(format!("some of {}", known.join(", "))));
@@ -55,11 +62,18 @@ fn columns(header: &csv::StringRecord) -> Result<Columns, Problem> {
         Some(column) => (column, 1e6),
         None => (need("wavelength_nm")?, 1e9),
     };
-    let mut shares = [0; 4];
-    for (column, name) in shares.iter_mut().zip(SHARES) {
-        *column = need(name)?;
+    let [reflected, transmitted] =
+        MEANS.map(|names| names.into_iter().find_map(|(name, unit)| find(name).map(|column| (column, unit))));
+    let mut shares = [reflected, reflected, transmitted, transmitted];
+    if reflected.is_none() && transmitted.is_none() {
+        for (column, name) in shares.iter_mut().zip(SHARES) {
+            *column = Some((need(name)?, 1.0));
+        }
+    } else if let Some(name) = SHARES.into_iter().find(|name| find(name).is_some()) {
+        let problem = Problem::error(format!("the column `{name}` beside a mean of both polarisations"));
+        return Err(problem.expecting("rs, rp, ts and tp, or reflectance and transmittance"));
     }
-    Ok(Columns { wavelength, angle: need("angle_deg")?, shares, phases: PHASES.map(find) })
+    Ok(Columns { wavelength, angle: find("angle_deg"), shares, phases: PHASES.map(find) })
 }
 
 fn row(columns: &Columns, record: &csv::StringRecord) -> Result<Row, Problem> {
@@ -78,9 +92,13 @@ fn row(columns: &Columns, record: &csv::StringRecord) -> Result<Row, Problem> {
     if row.wavelength <= 0.0 {
         return Err(Problem::error("a wavelength is above 0"));
     }
-    row.angle = within(columns.angle, 90.0, "an angle from 0 to 90 deg")?.to_radians();
+    if let Some(angle) = columns.angle {
+        row.angle = within(angle, 90.0, "an angle from 0 to 90 deg")?.to_radians();
+    }
     for k in 0..4 {
-        row.power[k] = within(columns.shares[k], 1.0, "a share from 0 to 1")?;
+        if let Some((column, unit)) = columns.shares[k] {
+            row.power[k] = unit * within(column, 1.0 / unit, "a share from 0 to 1, or to 100 percent")?;
+        }
         if let Some(column) = columns.phases[k] {
             row.phase[k] = number(column)?.to_radians();
         }
@@ -116,6 +134,21 @@ mod tests {
         assert_eq!((row.wavelength, row.angle), (0.55e-6, 45f64.to_radians()));
         assert_eq!(row.power, [0.5, 0.4, 0.5, 0.6]);
         assert_eq!(row.phase, [MIRROR[0], 90f64.to_radians(), 0.0, 0.0]);
+    }
+
+    #[test]
+    fn means_of_both_polarisations_and_percents_are_read() {
+        let power = |text: &str| parse(text).expect("rows")[0].power;
+        assert_eq!(power("wavelength_nm,reflectance\n400,0.9\n"), [0.9, 0.9, 0.0, 0.0]);
+        assert_eq!(
+            power("wavelength_nm,reflectance_percent,transmittance_percent\n400,50,25\n"),
+            [0.5, 0.5, 0.25, 0.25]
+        );
+        for bad in ["400,inf", "400,-0.1", "400,90", "400,=1+1", "400,0,9"] {
+            assert!(parse(&format!("wavelength_nm,reflectance\n{bad}\n")).is_err(), "{bad}");
+        }
+        assert!(parse("wavelength_nm;reflectance\n400;0,9\n").is_err());
+        assert!(parse("wavelength_nm,reflectance,rs\n400,0.9,0.9\n").is_err());
     }
 
     #[test]
