@@ -83,10 +83,10 @@ pub fn find(name: &str) -> Result<&'static Finish, Problem> {
         let names: Vec<&str> = LIBRARY.iter().map(|finish| finish.name).collect();
         let problem = Problem::error(format!("the library has no finish {name:?}"));
         match did_you_mean(name, names.iter().copied()) {
-            Some(close) => {
-                problem.expecting(format!("one of {}", names.join(", "))).hinting(format!("did you mean {close:?}?"))
-            }
-            None => problem.expecting(format!("one of {}", names.join(", "))),
+            Some(close) => problem.hinting(format!("did you mean {close:?}? `straylight finishes` lists them")),
+            None => problem
+                .expecting(format!("one of {}", names.join(", ")))
+                .hinting("`straylight finishes` lists them".to_owned()),
         }
     })
 }
@@ -209,7 +209,7 @@ mod tests {
         let problem = find("black anodise EC1").expect_err("no such finish").to_string();
         assert!(problem.contains("did you mean \"black anodize EC1\"?"), "{problem}");
         let problem = find("gold").expect_err("no such finish").to_string();
-        assert!(LIBRARY.iter().all(|finish| problem.contains(finish.name)), "{problem}");
+        assert!(problem.contains("black anodize EC1") && problem.contains("straylight finishes"), "{problem}");
     }
 
     /// The rule that the module states: from 650 nm to both sides, as far as the spectrum stays within a fifth.
