@@ -13,6 +13,9 @@
 //! beyond, since the spectrum was measured on another sample, and dyes differ; who needs the infrared takes the diffuse entry, whose total is
 //! right, or measures.
 
+// A problem of an input is built once per run.
+#![allow(clippy::result_large_err)]
+
 mod library;
 mod spectrum;
 
