@@ -19,7 +19,9 @@ fn main() -> ExitCode {
         Verb::Export(args) => cli::export::export(&args),
         Verb::Import(args) => cli::import::import(&args),
         Verb::Fit(args) => cli::fit::fit(&args),
+        Verb::FitBsdf(args) => cli::fit_bsdf::fit_bsdf(&args),
         Verb::Coating(args) => cli::coating::coating(&args),
+        Verb::Finishes => cli::finishes::finishes(),
         Verb::Schema => cli::schema::schema(),
     };
     cli::conclude(done)

@@ -212,6 +212,7 @@ fn results() -> Results {
             ("triplet.glb".into(), "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into()),
         ]),
         parameters: BTreeMap::from([("hood.length".into(), "120 mm".into())]),
+        finishes: vec!["generic black paint: generic, not measured".into()],
         path_grid: 16,
         paths: paths(),
         maps: maps(),

@@ -9,6 +9,8 @@ pub mod contamination;
 pub mod cosine_power;
 pub mod csv_table;
 mod entries;
+pub mod finish;
+pub mod fit;
 pub mod fred;
 pub mod gaussian;
 pub mod harvey;
@@ -18,6 +20,7 @@ pub mod oren_nayar;
 pub mod polish;
 pub mod radial;
 pub mod reading;
+pub mod spectral;
 pub mod speos;
 pub mod tabulated;
 pub mod zemax;
@@ -35,6 +38,7 @@ pub use microfacet::{Compensation, Distribution, Facets, Microfacet};
 pub use oren_nayar::OrenNayar;
 pub use polish::{KCorrelation, Polish, PsdTable};
 pub use radial::Side;
+pub use spectral::Spectral;
 pub use tabulated::Tabulated;
 
 /// A scatter model. `eval`, `pdf`, `sample` and `albedo` describe one and the same function at every incidence.

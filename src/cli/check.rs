@@ -55,6 +55,7 @@ pub fn check(args: &CheckArgs) -> Result<Ending, Error> {
     let sections = [
         head(scene, &facts),
         parameters(&compiled.parameters),
+        finishes(&compiled.finishes),
         nodes(&facts.nodes),
         media(scene),
         parts(&facts),
@@ -89,6 +90,12 @@ fn parameters(values: &BTreeMap<String, String>) -> String {
     let mut table = Table::new(["parameter", "value"], &[]);
     values.iter().take(MOST).for_each(|(name, value)| table.row([name.clone(), value.clone()]));
     if values.is_empty() { String::new() } else { section("Parameters", &table, values.len()) }
+}
+
+/// What is assumed of the finishes of the built-in library.
+fn finishes(assumed: &[String]) -> String {
+    let lines: String = assumed.iter().map(|line| format!("  {line}\n")).collect();
+    if lines.is_empty() { lines } else { format!("Finishes of the built-in library\n{lines}") }
 }
 
 /// A title, a table and how many rows are not in it.

@@ -5,7 +5,9 @@ pub mod bsdf;
 pub mod check;
 pub mod coating;
 pub mod export;
+pub mod finishes;
 pub mod fit;
+pub mod fit_bsdf;
 pub mod import;
 mod optics;
 pub mod ray;
@@ -56,8 +58,13 @@ pub enum Verb {
     Import(import::ImportArgs),
     /// Find the planes, spheres, conics and cylinders that a mesh was made from
     Fit(fit::FitArgs),
+    /// Fit ABg, Harvey-Shack and K-correlation laws to a measured table of scatter
+    FitBsdf(fit_bsdf::FitBsdfArgs),
     /// Print and draw what a coating reflects, transmits and absorbs
     Coating(coating::CoatingArgs),
+    /// Print the built-in finishes: names, wavelengths, sources
+    #[command(after_help = "Example:\n  straylight finishes")]
+    Finishes,
     /// Print the grammar of a system file, as a commented example
     #[command(after_help = "Example:\n  straylight schema > system.ron")]
     Schema,

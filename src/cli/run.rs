@@ -89,7 +89,7 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
     let seconds = start.elapsed().as_secs_f64();
     let warnings = compiled.warnings.iter().map(ToString::to_string).collect();
     let results = summary::results(&compiled.scene, &settings, &counts, 0, compiled.inputs, warnings);
-    let results = Results { parameters: compiled.parameters, ..results };
+    let results = Results { parameters: compiled.parameters, finishes: compiled.finishes, ..results };
     let info = info(args, &settings, &counts, &results, pool.current_num_threads(), seconds);
     tell(&report::text(&results, &info));
     let written = report::write(&args.output, &results, &info)

@@ -45,6 +45,9 @@ fn heading(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
         let all: Vec<String> = results.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         writeln!(out, "parameters: {}", all.join(", "))?;
     }
+    for finish in &results.finishes {
+        writeln!(out, "finish: {finish}")?;
+    }
     if run.interrupted {
         writeln!(out, "interrupted: what was finished is below")?;
     }

@@ -138,6 +138,8 @@ pub struct Results {
     pub inputs: BTreeMap<String, String>,
     /// Values of the system's parameters by name (`120 mm`), as the file or the command line gives them.
     pub parameters: BTreeMap<String, String>,
+    /// What is assumed of the finishes of the built-in library: source, kind and wavelengths, a line each.
+    pub finishes: Vec<String>,
     /// Cells along each side of the grid on which a path's peak is given.
     pub path_grid: usize,
     #[serde(skip)]

@@ -60,6 +60,7 @@ pub fn results<const V: usize>(
         trusted,
         inputs,
         parameters: BTreeMap::new(),
+        finishes: Vec::new(),
         path_grid: PATH_GRID,
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
         maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),

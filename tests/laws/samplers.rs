@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use straylight::bsdf::reading::Unmeasured;
 use straylight::bsdf::{
     Abg, Axis, Bsdf, Compensation, CosinePower, Distribution, Facets, Gaussian, Harvey, KCorrelation, Lambertian,
-    Microfacet, OrenNayar, Polish, PsdTable, Side, Tabulated, speos, zemax,
+    Microfacet, OrenNayar, Polish, PsdTable, Side, Spectral, Tabulated, speos, zemax,
 };
 use straylight::math::Rng;
 use straylight::math::quadrature::GaussLegendre;
@@ -19,6 +19,7 @@ pub fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
     vec![
         ("lambertian", Box::new(Lambertian { reflectance: 0.3, transmittance: 0.0 })),
         ("lambertian both ways", Box::new(Lambertian { reflectance: 0.2, transmittance: 0.5 })),
+        ("lambertian by wavelength", Box::new(spectral())),
         ("abg g 1.8", Box::new(Abg::new(0.0025, 0.001, 1.8, Side::Reflect))),
         ("abg g 2 B 1e-9", Box::new(Abg::new(1e-3, 1e-9, 2.0, Side::Reflect))),
         ("abg g 1", Box::new(Abg::new(0.01, 0.02, 1.0, Side::Reflect))),
@@ -49,6 +50,12 @@ pub fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
         ("black anodize", Box::new(anodize())),
         ("black anodize, zemax", Box::new(zemax())),
     ]
+}
+
+/// Between the entries of its spectrum at the wavelength of these laws.
+fn spectral() -> Spectral<Lambertian> {
+    let white = Lambertian { reflectance: 1.0, transmittance: 0.0 };
+    Spectral::new(white, vec![500e-9, 600e-9], vec![0.1, 0.7])
 }
 
 /// A polish with a shoulder at 20 um.

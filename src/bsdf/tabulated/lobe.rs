@@ -4,6 +4,9 @@ use crate::math::table::bracket;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+/// Cosine below which a direction lies in the surface: the rounding of angles in degrees.
+const HORIZON: f64 = 1e-9;
+
 /// The direction from which polar angles count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pole {
@@ -76,6 +79,41 @@ impl Lobe {
         low + u * (high - low)
     }
 
+    /// The entries above the horizon, each once: unit direction in the axes (forward, across, normal), and the value there, 1/sr. Where
+    /// the two sides of the plane of incidence are alike, one of them.
+    pub fn entries(&self) -> Vec<(DVec3, f64)> {
+        let columns = self.phi.len();
+        let value = |i: usize, j: usize| self.value[i * columns + j];
+        let mirrored = |i: usize, j: usize| {
+            let twin = self.phi.iter().position(|phi| (phi + self.phi[j] - TAU).abs() < 1e-9);
+            self.phi[j] > PI + 1e-9 && twin.is_some_and(|twin| value(i, twin) == value(i, j))
+        };
+        let mut entries = Vec::new();
+        for (i, theta) in self.theta.iter().enumerate() {
+            // At the pole all azimuths are one direction, and the last azimuth is the first.
+            let around = if *theta == 0.0 { 1 } else { columns - 1 };
+            for j in (0..around).filter(|j| !mirrored(i, *j)) {
+                let d = self.direction(*theta, self.phi[j]);
+                if d.z > HORIZON {
+                    entries.push((d, value(i, j)));
+                }
+            }
+        }
+        entries
+    }
+
+    /// The direction at polar angle `theta` and azimuth `phi` (rad): inverse of what [`Lobe::at`] does.
+    fn direction(&self, theta: f64, phi: f64) -> DVec3 {
+        let from = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
+        match self.pole {
+            Pole::Normal => from,
+            Pole::Specular => {
+                let (sin, cos) = self.specular;
+                DVec3::new(from.z * sin - from.x * cos, from.y, from.x * sin + from.z * cos)
+            }
+        }
+    }
+
     /// Scattered / incident flux. Of entries about the normal that reach the horizon: the trapezoidal sum of BRDF cos(theta) sin(theta)
     /// d theta d phi over them, with which such tables are written; else the integral, by midpoints of cells of equal projected solid angle.
     pub fn tis(&self) -> f64 {
@@ -139,6 +177,21 @@ mod tests {
         assert!((at(1.0, FRAC_PI_2) - 3.5).abs() < 1e-12);
         assert!((at(1.0, -FRAC_PI_2) - 4.5).abs() < 1e-12);
         assert!((at(2.0, PI) - 7.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn entries_are_where_the_lobe_says() {
+        let theta = vec![0.0, 0.3, 0.6];
+        let value = [[5.0; 5], [4.0, 3.0, 2.0, 3.0, 4.0], [2.0, 1.5, 1.0, 1.2, 2.0]].concat();
+        let phi = vec![0.0, 0.5 * PI, PI, 1.5 * PI, TAU];
+        for pole in [Pole::Normal, Pole::Specular] {
+            let lobe =
+                Lobe::new(0.4, theta.clone(), phi.clone(), value.clone()).expect("a lobe").about(pole, Beyond::Zero);
+            let entries = lobe.entries();
+            // The pole, three sides of the first ring, four of the second.
+            assert_eq!(entries.len(), 8);
+            assert!(entries.iter().all(|(d, value)| (lobe.at(*d) - value).abs() < 1e-9), "{entries:?}");
+        }
     }
 
     #[test]

@@ -80,6 +80,21 @@ impl Table {
         Table { transmitted: true, ..self }
     }
 
+    /// The lobes as they were given, by rising incidence; the values of the table are theirs times a factor of the wavelength.
+    pub fn lobes(&self) -> &[Lobe] {
+        &self.lobes
+    }
+
+    /// Vacuum wavelengths (m) and the factors on all values there, dimensionless.
+    pub fn spectrum(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.wavelength.iter().copied().zip(self.factor.iter().copied())
+    }
+
+    /// True if the lobes are those of transmitted light.
+    pub fn is_transmitted(&self) -> bool {
+        self.transmitted
+    }
+
     /// Scattered / incident flux by angle of incidence (rad) at factor 1: as it is used, and as the lobes integrate.
     pub fn totals(&self) -> impl Iterator<Item = (f64, [f64; 2])> + '_ {
         let pairs = self.tis.iter().zip(&self.lobes);

@@ -91,6 +91,7 @@ fn file(map: &MapResult, system: &str) -> Vec<u8> {
         warnings: Vec::new(),
         trusted: true,
         parameters: Default::default(),
+        finishes: Vec::new(),
         inputs: Default::default(),
         path_grid: 16,
         paths: Vec::new(),

@@ -24,6 +24,12 @@ pub fn reproduce(results: &Results, run: &RunInfo) -> Markup {
                     tbody { @for (name, value) in &results.parameters { tr { td { (name) } td { (value) } } } }
                 }
             }
+            @if !results.finishes.is_empty() {
+                table.inputs {
+                    thead { tr { th { "Finishes of the built-in library" } } }
+                    tbody { @for finish in &results.finishes { tr { td { (finish) } } } }
+                }
+            }
             @if !results.inputs.is_empty() {
                 table.inputs {
                     thead { tr { th { "Input" } th { "SHA-256" } } }

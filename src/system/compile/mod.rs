@@ -44,6 +44,8 @@ pub struct Compiled {
     pub inputs: BTreeMap<String, String>,
     /// Values of the system's parameters by name: `120 mm`.
     pub parameters: BTreeMap<String, String>,
+    /// What is assumed of the finishes of the built-in library, a line each.
+    pub finishes: Vec<String>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -142,6 +144,9 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let watched = receivers::detectors(&mut shop, &assembly);
     let sources = lights::sources(&mut shop, &assembly);
     coatings::ranges(&mut shop, &coatings, &sources);
+    if !sources.is_empty() {
+        scatter::ranges(&mut shop, &sources);
+    }
     if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
         shop.fault("sources", Problem::error("nothing shines").expecting("at least one source"));
     }
@@ -176,7 +181,8 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         return Err(Error::Input(problems));
     }
     let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
-    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters }, assembly))
+    let finishes = scatter::assumptions(document);
+    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes }, assembly))
 }
 
 fn stem(document: &Document) -> String {

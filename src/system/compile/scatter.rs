@@ -3,11 +3,13 @@
 use super::Shop;
 use super::media::{self, load};
 use crate::bsdf::contamination::{Deposit, distribution};
-use crate::bsdf::{self, Bsdf};
+use crate::bsdf::{self, Bsdf, finish};
 use crate::error::{Problem, Span};
 use crate::medium;
+use crate::source::Source;
 use crate::system::document as written;
 use crate::system::units::{Frequency, PowerDensity};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -27,6 +29,13 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
         written::Scatter::Table { file, scale, unmeasured } => {
             table(shop, file, *scale, *unmeasured, path).into_iter().collect()
         }
+        written::Scatter::Finish(name) => match finish::find(name).and_then(finish::Finish::lobes) {
+            Ok(lobes) => lobes,
+            Err(problem) => {
+                shop.fault(path, problem);
+                Vec::new()
+            }
+        },
         written::Scatter::Sum(parts) => {
             parts.iter().enumerate().flat_map(|(i, part)| lobes(shop, part, &format!("{path}[{i}]"))).collect()
         }
@@ -131,8 +140,29 @@ pub fn rms(written: &written::Scatter, wavelength: f64) -> Option<f64> {
         written::Scatter::Psd { frequency, density, .. } => {
             Some(bsdf::Polish::new(measured(frequency, density), reflect).rms(1.0 / wavelength))
         }
+        written::Scatter::Finish(name) => {
+            Some(bsdf::Polish::new(finish::find(name).ok()?.polish()?, reflect).rms(1.0 / wavelength))
+        }
         written::Scatter::Sum(parts) => parts.iter().find_map(|part| rms(part, wavelength)),
         _ => None,
+    }
+}
+
+/// What is assumed of the finishes of the library that a document names, each once.
+pub fn assumptions(document: &written::Document) -> Vec<String> {
+    let named = document.system.scatter.iter().flat_map(|(_, written)| written.finishes());
+    let lines: BTreeSet<String> = named.map(finish::Finish::assumption).collect();
+    lines.into_iter().collect()
+}
+
+/// Notes finishes of the library that are used beyond the wavelengths for which they hold.
+pub fn ranges(shop: &mut Shop, sources: &[Source]) {
+    let document = shop.document;
+    for (name, written) in document.system.scatter.iter() {
+        let low = sources.iter().map(|source| source.spectrum.range()[0]).fold(f64::INFINITY, f64::min);
+        let high = sources.iter().map(|source| source.spectrum.range()[1]).fold(0.0, f64::max);
+        let doubts = written.finishes().into_iter().filter_map(|finish| finish.doubt([low, high]));
+        doubts.for_each(|doubt| shop.fault(&format!("scatter[{name:?}]"), doubt));
     }
 }
 

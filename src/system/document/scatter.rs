@@ -1,5 +1,6 @@
 //! How a surface scatters.
 
+use crate::bsdf::finish;
 use crate::system::units::{Angle, Frequency, Length, PowerDensity};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -138,6 +139,8 @@ pub enum Scatter {
         #[serde(default = "soot")]
         k: f64,
     },
+    /// A finish of the built-in library, by its name.
+    Finish(String),
     /// Several models at once: their BSDFs add.
     Sum(Vec<Scatter>),
 }
@@ -226,6 +229,15 @@ pub enum Roughness {
 }
 
 impl Scatter {
+    /// The finishes of the library in this model, those that exist.
+    pub fn finishes(&self) -> Vec<&'static finish::Finish> {
+        match self {
+            Scatter::Finish(name) => finish::find(name).into_iter().collect(),
+            Scatter::Sum(parts) => parts.iter().flat_map(Scatter::finishes).collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The particles of this model, if it has some.
     pub fn contamination(&self) -> Option<&Scatter> {
         match self {
@@ -239,6 +251,7 @@ impl Scatter {
     pub fn is_of_shape(&self) -> bool {
         match self {
             Scatter::KCorrelation { .. } | Scatter::Psd { .. } => true,
+            Scatter::Finish(name) => finish::find(name).is_ok_and(|finish| finish.polish().is_some()),
             Scatter::Sum(parts) => parts.iter().any(Scatter::is_of_shape),
             _ => false,
         }

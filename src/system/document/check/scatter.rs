@@ -1,6 +1,7 @@
 //! Checks of scatter models.
 
 use super::{Checker, ROUNDING};
+use crate::bsdf::finish;
 use crate::error::Problem;
 use crate::system::document::{FacetEnergy, Roughness, Scatter, ScatterSide};
 use crate::system::units::{Frequency, PowerDensity};
@@ -62,6 +63,11 @@ impl Checker<'_> {
             Scatter::Table { file, scale, unmeasured: _ } => {
                 self.file(file, path);
                 self.not_negative(*scale, &format!("{path}.scale"));
+            }
+            Scatter::Finish(name) => {
+                if let Err(problem) = finish::find(name) {
+                    self.push(path, problem);
+                }
             }
             Scatter::Contamination { .. } => self.contamination(scatter, path),
             Scatter::Sum(parts) => {
