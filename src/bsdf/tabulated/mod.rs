@@ -21,7 +21,6 @@
 //!
 //! Left out: dependence on the azimuth of the sample (lay), polarisation; reciprocity is as good as the table.
 
-mod alias;
 mod grid;
 mod lobe;
 mod shape;
