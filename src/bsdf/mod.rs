@@ -52,6 +52,11 @@ pub trait Bsdf: Send + Sync + std::fmt::Debug {
     /// Scattered / incident flux at this incidence (the TIS), 0..1: the integral of f |cos| over all directions.
     fn albedo(&self, at: &Incidence) -> f64;
 
+    /// True if it depends on the azimuth of the plane of incidence: its surface must have a lay.
+    fn anisotropic(&self) -> bool {
+        false
+    }
+
     /// True if some light is transmitted.
     fn transmits(&self) -> bool {
         false

@@ -270,6 +270,7 @@ fn finish(shop: &Shop, entries: &[u16], front: bool, transparent: bool) -> Finis
         }
         finish.scatter = written.scatter.clone().or(finish.scatter);
         finish.order = written.order.unwrap_or(finish.order);
+        finish.lay = written.lay.or(finish.lay);
         finish.scattering = written.scattering.unwrap_or(finish.scattering);
     }
     if finish.is_unsaid() && !transparent {
@@ -281,6 +282,7 @@ fn finish(shop: &Shop, entries: &[u16], front: bool, transparent: bool) -> Finis
             finish.coating = default.coating.clone();
             finish.scatter = default.scatter.clone();
             finish.order = default.order.unwrap_or_default();
+            finish.lay = default.lay;
             finish.scattering = default.scattering.unwrap_or_default();
         }
     }
