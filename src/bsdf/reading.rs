@@ -51,6 +51,9 @@ pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> 
         zemax::parse(text, unmeasured)
     } else if text.lines().next().is_some_and(|line| line.contains("bsdf_per_sr")) {
         csv_table::parse(text, unmeasured)
+    } else if head("<?xml") || head("<WindowElement") {
+        let expected = "a text table here; XML of a window is read by `Klems(file: ..)`".into();
+        Err(vec![Problem { line: 1, message: "this is XML".into(), expected }])
     } else {
         let known =
             "a Speos .anisotropicbsdf, a Zemax .bsdf, a FRED table (`type bsdf_data`), or a CSV with `bsdf_per_sr`";
@@ -59,7 +62,7 @@ pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> 
 }
 
 /// Problems collected before giving up.
-const ENOUGH: usize = 20;
+pub(super) const ENOUGH: usize = 20;
 
 /// The lines of a file, with what was wrong so far.
 pub(super) struct Rows<'a> {

@@ -21,7 +21,7 @@ pub struct Finish {
     pub scattering: written::Scattering,
     /// Direction from which azimuths count, of scatter that depends on them.
     pub lay: Option<Direction>,
-    /// The side it is on, of a coating that is not the same from both, or if particles lie on the front.
+    /// The side it is on, of a coating or a scatter model that is not the same from both.
     pub side: Option<Side>,
 }
 
@@ -61,7 +61,8 @@ impl Finish {
             let problem = Problem::error(what).expecting("`order: Scaled` on every surface that has it");
             shop.fault(&format!("scatter[{name:?}]"), problem);
         }
-        let lobes = scatter.map_or(Vec::new(), |(name, model)| lobes(shop, model, &format!("scatter[{name:?}]")));
+        let side = self.side.unwrap_or(Side::Front);
+        let lobes = scatter.map_or(Vec::new(), |(name, model)| lobes(shop, model, side, &format!("scatter[{name:?}]")));
         let lay = self.lay.map(|lay| lay.0);
         if let Some((name, _)) = scatter.filter(|_| lay.is_none() && lobes.iter().any(|lobe| lobe.anisotropic())) {
             let what = format!("{name:?} depends on the azimuth of the light, and this surface has no lay");
