@@ -207,3 +207,67 @@ impl<'a, 'input> File<'a, 'input> {
         (self.problems.len() == before).then_some(value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rings of one and two patches; light that arrives in patch i leaves in patch o with 0.1 i + 0.01 o.
+    const SMALL: &str = "<?xml version=\"1.0\"?>\n<WindowElement xmlns=\"http://windows.lbl.gov\"><Optical><Layer>\n<DataDefinition>\n\
+        <IncidentDataStructure>Columns</IncidentDataStructure>\n<AngleBasis><AngleBasisName>small</AngleBasisName>\n\
+        <AngleBasisBlock><nPhis>1</nPhis>\n<ThetaBounds><LowerTheta>0</LowerTheta><UpperTheta>30</UpperTheta></ThetaBounds>\n</AngleBasisBlock>\n\
+        <AngleBasisBlock><nPhis>2</nPhis>\n<ThetaBounds><LowerTheta>30</LowerTheta><UpperTheta>90</UpperTheta></ThetaBounds>\n</AngleBasisBlock>\n\
+        </AngleBasis></DataDefinition>\n<WavelengthData><Wavelength unit=\"Integral\">Visible</Wavelength>\n<WavelengthDataBlock>\n\
+        <WavelengthDataDirection>Reflection Back</WavelengthDataDirection>\n<ColumnAngleBasis>small</ColumnAngleBasis>\n\
+        <RowAngleBasis>small</RowAngleBasis>\n<ScatteringData>\n0, 0.1, 0.2,\n0.01, 0.11, 0.21,\n0.02 0.12\t0.22\n</ScatteringData>\n\
+        </WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>\n";
+
+    #[test]
+    fn columns_and_rows_are_told_apart() {
+        for (structure, entry) in [("Columns", [0.1, 0.01]), ("Rows", [0.01, 0.1])] {
+            let text = format!("\u{feff}{}", SMALL.replace("Columns", structure).replace('\n', "\r\n"));
+            let matrix = parse(&text, "visible").expect("a good file").remove(0);
+            assert_eq!((matrix.way, matrix.face), (Way::Reflection, Face::Back));
+            for (k, value) in matrix.value.iter().enumerate() {
+                let wanted = entry[0] * (k / 3) as f64 + entry[1] * (k % 3) as f64;
+                assert!((value - wanted).abs() < 1e-15, "{structure}: {k}: {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_defect_is_named_with_its_line() {
+        for (from, to, line, words) in [
+            ("<Optical>", "<Mechanical>", 19, "Mechanical"),
+            ("Columns", "TensorTree4", 3, "TensorTree4"),
+            ("<nPhis>2</nPhis>", "<nPhis>2.5</nPhis>", 8, "2.5"),
+            ("<nPhis>2</nPhis>", "<nPhis>0</nPhis>", 5, "no hemisphere"),
+            ("<nPhis>2</nPhis>", "", 8, "nPhis"),
+            ("<LowerTheta>30", "<LowerTheta>40", 9, "40"),
+            ("<UpperTheta>90", "<UpperTheta>80", 5, "no hemisphere"),
+            (">Visible<", ">Solar<", 2, "Solar"),
+            ("Reflection Back", "Reflection Top", 14, "Top"),
+            ("<RowAngleBasis>small", "<RowAngleBasis>large", 16, "large"),
+            ("0.11", "-0.11", 19, "-0.11"),
+            ("0.11", "o.11", 19, "o.11"),
+            ("0.22", "", 17, "8 values"),
+        ] {
+            let changed = SMALL.replacen(from, to, 1);
+            assert_ne!(changed, SMALL, "nothing changed by {from:?}");
+            let problem = parse(&changed, "Visible").expect_err(to).remove(0);
+            assert!(problem.to_string().contains(words), "{to:?}: {problem}");
+            assert_eq!(problem.line, line, "{to:?}: {problem}");
+        }
+    }
+
+    #[test]
+    fn all_bad_numbers_are_reported_and_garbage_is_refused() {
+        let bad = SMALL.replace("0.01", "x").replace("0.02", "y");
+        assert_eq!(parse(&bad, "Visible").expect_err("two").len(), 2);
+        let twice = SMALL.replace("</WavelengthData>", "</WavelengthData><!-- -->");
+        assert!(parse(&twice, "Visible").is_ok());
+        for text in ["", "<a", "<a/>", "\u{0}", "<WindowElement><Optical><Layer/></Optical></WindowElement>"] {
+            assert!(parse(text, "Visible").is_err(), "{text}");
+        }
+    }
+}

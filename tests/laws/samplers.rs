@@ -263,7 +263,7 @@ fn p_value(model: &dyn Bsdf, at: &Incidence, expected: &[f64], seed: u64) -> f64
 }
 
 /// p-value of the bins that `draw` gives against their probabilities.
-fn chi_squared(draws: u32, expected: &[f64], mut draw: impl FnMut() -> Option<usize>) -> f64 {
+pub fn chi_squared(draws: u32, expected: &[f64], mut draw: impl FnMut() -> Option<usize>) -> f64 {
     let mut count = vec![0u32; expected.len()];
     let mut none = 0u32;
     for _ in 0..draws {
