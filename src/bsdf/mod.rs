@@ -5,6 +5,7 @@
 //! f |cos theta_s| dw times the incident flux.
 
 pub mod abg;
+pub mod anisotropic;
 pub mod contamination;
 pub mod cosine_power;
 pub mod csv_table;
@@ -29,6 +30,7 @@ use crate::optics::Incidence;
 use glam::DVec3;
 
 pub use abg::Abg;
+pub use anisotropic::Anisotropic;
 pub use cosine_power::{Axis, CosinePower};
 pub use gaussian::Gaussian;
 pub use harvey::Harvey;

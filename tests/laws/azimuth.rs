@@ -4,7 +4,9 @@ use crate::samplers::{chi_squared, small_cells};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use straylight::bsdf::klems::{Face, Matrix, Way};
-use straylight::bsdf::{Bsdf, Klems, klems_xml};
+use straylight::bsdf::reading::Unmeasured;
+use straylight::bsdf::tabulated::Table;
+use straylight::bsdf::{Anisotropic, Bsdf, Klems, Tabulated, klems_xml, zemax};
 use straylight::math::Rng;
 use straylight::optics::Incidence;
 
@@ -30,7 +32,28 @@ fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
         ("screen, back", Box::new(Klems::new(back, 0.5))),
         ("motley", Box::new(Klems::new(motley(Way::Reflection), 1.0))),
         ("motley, transmitted", Box::new(Klems::new(motley(Way::Transmission), 1.0))),
+        ("table", Box::new(Anisotropic::new(rotated(&[0.0, 60.0, 110.0], [1.0, 3.0, 0.5]), 1.0).expect("below 100 %"))),
     ]
+}
+
+/// A measured table as if it had been measured at these rotations (deg), with these factors.
+fn rotated<const N: usize>(rotations: &[f64; N], factors: [f64; N]) -> Vec<Table> {
+    let text = include_str!("../data/bsdf/AnoBlackEC1onAlum.bsdf");
+    let (head, data) = text.split_once("DataBegin").expect("a table");
+    let line = head.lines().position(|line| line.starts_with("SampleRotation")).expect("one rotation");
+    let list: Vec<String> = rotations.iter().map(f64::to_string).collect();
+    let mut lines: Vec<String> = head.lines().map(str::to_owned).collect();
+    lines.splice(line..line + 2, [format!("SampleRotation {N}"), list.join(" ")]);
+    let data = data.split("DataEnd").next().expect("its end");
+    let scaled = |factor: f64| {
+        let row = |line: &str| match line.trim().strip_prefix("TIS").and_then(|tis| tis.trim().parse::<f64>().ok()) {
+            Some(tis) => format!("TIS {}\n", factor * tis),
+            None => format!("{line}\n"),
+        };
+        data.lines().map(row).collect::<String>()
+    };
+    let body: String = factors.into_iter().map(scaled).collect();
+    zemax::parse(&format!("{}\nDataBegin\n{body}DataEnd\n", lines.join("\n")), Unmeasured::Zero).expect("a good table")
 }
 
 /// Several angles and azimuths; azimuths are multiples of 0.75 deg, so that edges of patches are edges of small cells.
@@ -152,4 +175,53 @@ fn a_screen_is_brightest_straight_on() {
             }
         }
     }
+}
+
+#[test]
+fn an_isotropic_table_at_several_azimuths_is_the_isotropic_table() {
+    for rotations in [&[0.0, 90.0], &[30.0, 250.0]] {
+        let tables = rotated(rotations, [1.0; 2]);
+        // Both on the grid of one among two.
+        let alone = Tabulated::among(2, tables[0].clone(), 1.0).expect("below 100 %");
+        let model = Anisotropic::new(tables, 1.0).expect("below 100 %");
+        for at in &incidences() {
+            assert!((model.albedo(at) / alone.albedo(at) - 1.0).abs() < 1e-12);
+            let mut rng = Rng::new(2, 3, 4);
+            for _ in 0..100 {
+                let wo = model.sample(at, &mut rng).expect("it scatters");
+                assert!((model.eval(at, wo) / alone.eval(at, wo) - 1.0).abs() < 1e-12);
+                assert!((model.pdf(at, wo) / alone.pdf(at, wo) - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+/// Light that travels at an azimuth (deg) from the lay.
+fn travelling(azimuth: f64) -> Incidence {
+    let lay = DVec2::from_angle(PI - azimuth.to_radians());
+    Incidence { lay, ..Incidence::in_air(0.7, 550e-9) }
+}
+
+#[test]
+fn tables_count_straight_between_azimuths_and_around() {
+    let albedo = |rotations: [f64; 3], azimuth: f64| {
+        let model = Anisotropic::new(rotated(&rotations, [1.0, 3.0, 0.5]), 1.0).expect("below 100 %");
+        model.albedo(&travelling(azimuth)) / rotated_alone()
+    };
+    // Rotations up to 180 deg: the same again from the other side.
+    for (azimuth, wanted) in
+        [(0.0, 1.0), (30.0, 2.0), (85.0, 1.75), (145.0, 0.75), (180.0, 1.0), (210.0, 2.0), (-35.0, 0.75)]
+    {
+        let found = albedo([0.0, 60.0, 110.0], azimuth);
+        assert!((found / wanted - 1.0).abs() < 1e-9, "{azimuth}: {found}");
+    }
+    for (azimuth, wanted) in [(20.0, 1.0), (140.0, 2.0), (280.0, 1.75), (-30.0, 0.6875), (10.0, 0.9375)] {
+        let found = albedo([20.0, 260.0, 300.0], azimuth);
+        assert!((found / wanted - 1.0).abs() < 1e-9, "{azimuth}: {found}");
+    }
+}
+
+/// Albedo of the table as it was measured.
+fn rotated_alone() -> f64 {
+    Anisotropic::new(rotated(&[0.0], [1.0]), 1.0).expect("below 100 %").albedo(&travelling(0.0))
 }

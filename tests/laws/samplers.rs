@@ -64,13 +64,13 @@ fn profile() -> PsdTable {
 /// The plausible wall of the triplet.
 pub fn anodize() -> Tabulated {
     let text = include_str!("../../systems/triplet/black-anodize-plausible.anisotropicbsdf");
-    Tabulated::new(speos::parse(text).expect("a good table"), 1.0).expect("below 100 %")
+    Tabulated::new(speos::parse(text).expect("a good table").remove(0), 1.0).expect("below 100 %")
 }
 
 /// A measured anodize whose table counts angles from the specular ray.
 pub fn zemax() -> Tabulated {
     let text = include_str!("../data/bsdf/AnoBlackEC1onAlum.bsdf");
-    Tabulated::new(zemax::parse(text, Unmeasured::Zero).expect("a good table"), 1.0).expect("below 100 %")
+    Tabulated::new(zemax::parse(text, Unmeasured::Zero).expect("a good table").remove(0), 1.0).expect("below 100 %")
 }
 
 /// Incidences in air and in glass, from normal to grazing; for transmission also beyond the critical angle.

@@ -163,10 +163,15 @@ fn table(
         written::Unmeasured::Zero => bsdf::reading::Unmeasured::Zero,
         written::Unmeasured::Hold => bsdf::reading::Unmeasured::Hold,
     };
-    let table = read(shop, file, path, |text| bsdf::reading::parse(text, rule))?;
-    contradictions(shop, &table, path);
-    match bsdf::Tabulated::new(table, scale) {
-        Ok(table) => Some(Box::new(table)),
+    let mut tables = read(shop, file, path, |text| bsdf::reading::parse(text, rule))?;
+    tables.iter().for_each(|table| contradictions(shop, table, path));
+    let made: Result<Box<dyn Bsdf>, _> = if tables.len() == 1 {
+        bsdf::Tabulated::new(tables.remove(0), scale).map(|lobe| Box::new(lobe) as Box<dyn Bsdf>)
+    } else {
+        bsdf::Anisotropic::new(tables, scale).map(|lobe| Box::new(lobe) as Box<dyn Bsdf>)
+    };
+    match made {
+        Ok(lobe) => Some(lobe),
         Err(bright) => {
             shop.fault(path, Problem::error(bright.to_string()));
             None
