@@ -212,7 +212,7 @@ mod tests {
             ("OPTIS", "PRITS", 1, "PRITS"),
             ("v8.0\n0", "v8.0\n1", 2, "binary"),
             ("0\t1\t0\n1\t0", "0\t1\t0\n1\t1", 7, "reflection"),
-            ("1\t0\n1", "1\t0\n2", 8, "kind"),
+            ("0\n1\n1\n0.0", "0\n2\n1\n0.0", 8, "kind"),
             ("1\n0.0\n", "2\n90 0\n", 10, "anisotropy"),
             ("1\n0.0\n", "2\n0 90\n", 13, "angles of incidence"),
             ("30\n30 0", "95\n30 0", 12, "incidence"),
@@ -249,7 +249,9 @@ mod tests {
     #[test]
     fn intensities_and_angles_from_the_other_normal_are_the_same_table() {
         let rows = |rows: &str, kind: &str| {
-            SMALL.replace("1\t0\n1", &format!("0\t1\n{kind}")).replace("2 2\n\t0 360\n0 1 1\n90 1 1", rows)
+            SMALL
+                .replace("1\t0\n1\n1\n0.0", &format!("0\t1\n{kind}\n1\n0.0"))
+                .replace("2 2\n\t0 360\n0 1 1\n90 1 1", rows)
         };
         let plain = rows("3 2\n0 360\n0 1 1\n60 3 3\n90 3 3", "1");
         for text in

@@ -89,6 +89,9 @@ fn axes(file: &mut Rows) -> Result<Axes, Problem> {
             }
         }
     }
+    if axes.rotation.is_empty() {
+        axes.rotation.push(0.0);
+    }
     file.rising(&axes.rotation, "rotations of the sample", 0.0..360.0 + 1e-9)?;
     file.rising(&axes.incidence, "angles of incidence", 0.0..90.0)?;
     let around = if axes.symmetric { 180.0 } else { 360.0 };
