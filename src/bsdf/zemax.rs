@@ -108,7 +108,7 @@ fn list(file: &mut Rows, count: &str, what: &str) -> Result<Vec<f64>, Problem> {
     let values = file.values(row, what)?;
     match count.parse::<usize>() {
         Ok(count) if count == values.len() => Ok(values),
-        _ => Err(file.problem(&format!("found {} {what}", values.len()), &format!("{count}"))),
+        _ => Err(file.problem(&format!("found {} {what}", values.len()), count)),
     }
 }
 
