@@ -13,7 +13,7 @@ use straylight::optics::Incidence;
 
 fn table() -> Tabulated {
     let text = include_str!("../systems/triplet/black-anodize-plausible.anisotropicbsdf");
-    Tabulated::new(speos::parse(text).expect("a good table"), 1.0).expect("below 100 %")
+    Tabulated::new(speos::parse(text).expect("a good table").remove(0), 1.0).expect("below 100 %")
 }
 
 /// Incidences all over the hemisphere, into a second medium of index `n`.

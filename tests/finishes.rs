@@ -114,7 +114,7 @@ fn the_tables_of_the_library_are_the_measured_ones() {
 
 fn measured(file: &str) -> Vec<Point> {
     let text = fs::read_to_string(data(file)).expect("a table");
-    points(&parse(&text, Unmeasured::Zero).expect("a good table"), 1.0)
+    points(&parse(&text, Unmeasured::Zero).expect("a good table")[0], 1.0)
 }
 
 /// Another program's fits to each incidence of the same samples, from their FRED tables: ours must not be worse.

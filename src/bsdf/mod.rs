@@ -5,6 +5,7 @@
 //! f |cos theta_s| dw times the incident flux.
 
 pub mod abg;
+pub mod anisotropic;
 pub mod contamination;
 pub mod cosine_power;
 pub mod csv_table;
@@ -14,6 +15,8 @@ pub mod fit;
 pub mod fred;
 pub mod gaussian;
 pub mod harvey;
+pub mod klems;
+pub mod klems_xml;
 pub mod lambertian;
 pub mod microfacet;
 pub mod oren_nayar;
@@ -30,9 +33,11 @@ use crate::optics::Incidence;
 use glam::DVec3;
 
 pub use abg::Abg;
+pub use anisotropic::Anisotropic;
 pub use cosine_power::{Axis, CosinePower};
 pub use gaussian::Gaussian;
 pub use harvey::Harvey;
+pub use klems::Klems;
 pub use lambertian::Lambertian;
 pub use microfacet::{Compensation, Distribution, Facets, Microfacet};
 pub use oren_nayar::OrenNayar;
@@ -55,6 +60,11 @@ pub trait Bsdf: Send + Sync + std::fmt::Debug {
 
     /// Scattered / incident flux at this incidence (the TIS), 0..1: the integral of f |cos| over all directions.
     fn albedo(&self, at: &Incidence) -> f64;
+
+    /// True if it depends on the azimuth of the plane of incidence: its surface must have a lay.
+    fn anisotropic(&self) -> bool {
+        false
+    }
 
     /// True if some light is transmitted.
     fn transmits(&self) -> bool {

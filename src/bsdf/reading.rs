@@ -38,19 +38,22 @@ pub enum Unmeasured {
     Hold,
 }
 
-/// Reads the text of a file in any of the formats. All bad numbers are reported (the first twenty); anything that makes the rest
+/// Reads the text of a file in any of the formats: one table, or one for each of several azimuths of the sample. All bad numbers are reported (the first twenty); anything that makes the rest
 /// unreadable stops.
-pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> {
+pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Vec<Table>, Vec<Problem>> {
     let text = text.trim_start_matches('\u{feff}');
     let head = |word: &str| text.lines().take(200).any(|line| line.trim_start().starts_with(word));
     if text.starts_with("OPTIS") {
         speos::parse(text)
     } else if head("type bsdf_data") {
-        fred::parse(text, unmeasured)
+        fred::parse(text, unmeasured).map(|table| vec![table])
     } else if head("ScatterAzimuth") {
         zemax::parse(text, unmeasured)
     } else if text.lines().next().is_some_and(|line| line.contains("bsdf_per_sr")) {
-        csv_table::parse(text, unmeasured)
+        csv_table::parse(text, unmeasured).map(|table| vec![table])
+    } else if head("<?xml") || head("<WindowElement") {
+        let expected = "a text table here; XML of a window is read by `Klems(file: ..)`".into();
+        Err(vec![Problem { line: 1, message: "this is XML".into(), expected }])
     } else {
         let known =
             "a Speos .anisotropicbsdf, a Zemax .bsdf, a FRED table (`type bsdf_data`), or a CSV with `bsdf_per_sr`";
@@ -59,7 +62,7 @@ pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> 
 }
 
 /// Problems collected before giving up.
-const ENOUGH: usize = 20;
+pub(super) const ENOUGH: usize = 20;
 
 /// The lines of a file, with what was wrong so far.
 pub(super) struct Rows<'a> {

@@ -1,57 +1,80 @@
-//! Reader of `.anisotropicbsdf` text files (OPTIS / Ansys Speos), reflection only.
+//! Reader of `.anisotropicbsdf` text files (OPTIS / Ansys Speos), of reflection or of transmission.
 //!
 //! Rows, by the public description "Structure of Anisotropic BSDF Files" (Ansys Speos help):
 //!
 //!     1  header               2  0: text                     3  comment
 //!     4  characters of the description, 5 the description (may span lines)
 //!     6  anisotropy vector    7  has reflection, has transmission (0/1)
-//!     8  1: values are proportional to the BSDF              9, 10  number of anisotropy angles, the angles (deg)
-//!     11, 12  number of angles of incidence, the angles (deg)
+//!     8  values are proportional to 1: the BSDF, 0: BSDF x cos(theta)     9, 10  number of anisotropy angles, the angles (deg)
+//!     11, 12  for every anisotropy angle: number of angles of incidence, the angles (deg)
 //!     13  theta and phi (deg) at which the spectrum was measured; 14 description of the spectrum
 //!     15  number of wavelengths, then rows: wavelength (nm), scattered fraction (%)
-//!     then for every incidence: numbers of theta and phi, a row of phi (deg), rows of theta (deg) and one value per phi
+//!     then for every anisotropy angle and incidence: numbers of theta and phi, a row of phi (deg), rows of theta (deg) and one value per phi
 //!
 //! Values are pi x BRDF up to a factor; the factor is set, as the description says, so that the TIS at the incidence of row
-//! 13 is the percentage of the spectrum. The specular direction is at phi = 0, theta = angle of incidence.
+//! 13 is the percentage of the spectrum. The specular direction is at phi = 0, theta = angle of incidence; of transmitted light theta
+//! counts from either normal (0 to 90 or 90 to 180 deg). An anisotropy angle is that from the anisotropy vector to the projection of the
+//! ray on the surface. The vector itself (row 6) is not used: a surface says its own lay.
 //!
-//! Refused with a message: binary files, transmission, intensity values, several anisotropy angles.
+//! Refused with a message: binary files, reflection and transmission in one file.
 
 use super::reading::{Problem, Rows, shorten};
 use super::tabulated::{Lobe, Table};
 use crate::math::table::linear;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-/// Reads the text of a file.
-pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
+/// Reads the text of a file: a table for every anisotropy angle.
+pub fn parse(text: &str) -> Result<Vec<Table>, Vec<Problem>> {
     let mut file = Rows::new(text);
     file.speos().map_err(|last| file.all(last))
 }
 
+/// What the values of a file are.
+#[derive(Clone, Copy)]
+struct Kind {
+    transmitted: bool,
+    /// Proportional to BSDF x cos(theta), not to the BSDF.
+    intensity: bool,
+}
+
 impl Rows<'_> {
-    fn speos(&mut self) -> Result<Table, Problem> {
-        self.header()?;
-        let incidence = self.incidence()?;
-        let reference = self.numbers("the angles (deg) of the spectrum", 2)?[0].to_radians();
+    fn speos(&mut self) -> Result<Vec<Table>, Problem> {
+        let kind = self.header()?;
+        let count = self.count("the number of anisotropy angles")?;
+        let azimuths = self.numbers("the anisotropy angles (deg)", count)?;
+        self.rising(&azimuths, "anisotropy angles", 0.0..360.0 + 1e-9)?;
+        let mut incidences = Vec::new();
+        for _ in &azimuths {
+            incidences.push(self.incidence()?);
+        }
+        let reference = self.numbers("the angles (deg) of the spectrum", 2)?;
         self.next("a description of the spectrum (may be empty)")?;
         let percent = self.spectrum()?;
-        let mut lobes = Vec::new();
-        for &theta in &incidence {
-            lobes.push(self.lobe(theta)?);
+        let mut all = Vec::new();
+        for incidence in &incidences {
+            all.push(incidence.iter().map(|&theta| self.lobe(theta, kind)).collect::<Result<Vec<Lobe>, Problem>>()?);
         }
         if let Some(last) = self.problems.pop() {
             return Err(last);
         }
-        let at = linear(&incidence, &lobes.iter().map(Lobe::tis).collect::<Vec<_>>(), reference);
+        let tis = |(incidence, lobes): (&Vec<f64>, &Vec<Lobe>)| {
+            linear(incidence, &lobes.iter().map(Lobe::tis).collect::<Vec<_>>(), reference[0].to_radians())
+        };
+        let at = linear(&azimuths, &incidences.iter().zip(&all).map(tis).collect::<Vec<_>>(), reference[1]);
         if at <= 0.0 {
-            return Err(self.problem("the table is zero at the incidence of its spectrum", "a BRDF above zero"));
+            return Err(self.problem("the table is zero at the incidence of its spectrum", "a BSDF above zero"));
         }
-        let spectrum = percent.into_iter().map(|[nm, p]| (nm * 1e-9, p / 100.0 / at)).collect();
-        Table::new(lobes, spectrum)
-            .ok_or_else(|| self.problem("the tables have no order", "rising angles and wavelengths"))
+        let spectrum: Vec<(f64, f64)> = percent.into_iter().map(|[nm, p]| (nm * 1e-9, p / 100.0 / at)).collect();
+        let table = |(lobes, azimuth): (Vec<Lobe>, &f64)| {
+            let table = Table::new(lobes, spectrum.clone())?.turned(azimuth.to_radians());
+            Some(if kind.transmitted { table.transmitted() } else { table })
+        };
+        let tables: Option<Vec<Table>> = all.into_iter().zip(&azimuths).map(table).collect();
+        tables.ok_or_else(|| self.problem("the tables have no order", "rising angles and wavelengths"))
     }
 
-    /// Rows 1 to 10.
-    fn header(&mut self) -> Result<(), Problem> {
+    /// Rows 1 to 8.
+    fn header(&mut self) -> Result<Kind, Problem> {
         let first = self.next("the header")?;
         if !first.starts_with("OPTIS - Anisotropic BSDF") {
             return Err(
@@ -66,11 +89,21 @@ impl Rows<'_> {
             read += 1 + self.next("more of the description")?.chars().count();
         }
         self.numbers("the anisotropy vector", 3)?;
-        self.choice("reflection and transmission", &["1", "0"], "`1 0`: reflection, no transmission")?;
-        self.choice("the kind of values", &["1"], "1: proportional to the BSDF")?;
-        self.choice("the number of anisotropy angles", &["1"], "1: isotropic about the normal")?;
-        self.numbers("the anisotropy angle (deg)", 1)?;
-        Ok(())
+        let sides = self.next("reflection and transmission")?.split_whitespace().collect::<Vec<_>>();
+        let transmitted = match sides[..] {
+            ["1", "0"] => false,
+            ["0", "1"] => true,
+            _ => {
+                let found = format!("reflection and transmission: found `{}`", shorten(&sides.join(" ")));
+                return Err(self.problem(&found, "`1 0` or `0 1`: one of them in a file"));
+            }
+        };
+        let intensity = match self.count("the kind of values: 1 (BSDF) or 0 (intensity)")? {
+            0 => true,
+            1 => false,
+            other => return Err(self.problem(&format!("the kind of values is {other}"), "1 (BSDF) or 0 (intensity)")),
+        };
+        Ok(Kind { transmitted, intensity })
     }
 
     /// Rows 11 and 12, rad.
@@ -102,7 +135,7 @@ impl Rows<'_> {
     }
 
     /// One table.
-    fn lobe(&mut self, incidence: f64) -> Result<Lobe, Problem> {
+    fn lobe(&mut self, incidence: f64, kind: Kind) -> Result<Lobe, Problem> {
         let size = self.numbers("the numbers of theta and phi", 2)?;
         let count = |n: f64| (n.fract() == 0.0 && (2.0..1e6).contains(&n)).then_some(n as usize);
         let (Some(rows), Some(columns)) = (count(size[0]), count(size[1])) else {
@@ -113,18 +146,42 @@ impl Rows<'_> {
         if phi[0] != 0.0 || phi[columns - 1] != 360.0 {
             return Err(self.problem("the azimuths do not close", "azimuths from 0 to 360 deg"));
         }
-        let (mut theta, mut value) = (Vec::new(), Vec::new());
+        let mut table: Vec<Vec<f64>> = Vec::new();
         for _ in 0..rows {
             let row = self.numbers("theta (deg) and a value for every azimuth", columns + 1)?;
-            theta.push(row[0]);
             self.check(&row[1..])?;
-            value.extend(row[1..].iter().map(|v| v * FRAC_1_PI));
+            table.push(row);
         }
-        self.rising(&theta, "scattering angles", 0.0..90.0 + 1e-9)?;
+        let theta: Vec<f64> = table.iter().map(|row| row[0]).collect();
+        let beyond = kind.transmitted && theta[0] >= 90.0;
+        self.rising(&theta, "scattering angles", if beyond { 90.0..180.0 + 1e-9 } else { 0.0..90.0 + 1e-9 })?;
+        if beyond {
+            table.iter_mut().for_each(|row| row[0] = 180.0 - row[0]);
+            table.reverse();
+        }
+        if kind.intensity {
+            without_cosine(&mut table);
+        }
+        let theta = table.iter().map(|row| row[0]).collect();
+        let value = table.iter().flat_map(|row| row[1..].iter().map(|v| v * FRAC_1_PI)).collect();
         let rad = |a: Vec<f64>| a.into_iter().map(f64::to_radians).collect::<Vec<_>>();
         let (theta, mut phi) = (rad(theta), rad(phi));
         phi[columns - 1] = TAU;
         Lobe::new(incidence, theta, phi, value).ok_or_else(|| self.problem("the table has no shape", "rising angles"))
+    }
+}
+
+/// Rows of theta (deg) and values, each divided by cos(theta); at the horizon, where nothing is left to divide, the row before.
+fn without_cosine(table: &mut [Vec<f64>]) {
+    const HORIZON: f64 = 1e-9;
+    for at in 0..table.len() {
+        let cos = table[at][0].to_radians().cos();
+        if cos > HORIZON {
+            table[at][1..].iter_mut().for_each(|v| *v /= cos);
+        } else if at > 0 {
+            let before = table[at - 1][1..].to_vec();
+            table[at][1..].copy_from_slice(&before);
+        }
     }
 }
 
@@ -154,7 +211,10 @@ mod tests {
         for (from, to, line, words) in [
             ("OPTIS", "PRITS", 1, "PRITS"),
             ("v8.0\n0", "v8.0\n1", 2, "binary"),
-            ("0\t1\t0\n1\t0", "0\t1\t0\n0\t1", 7, "reflection"),
+            ("0\t1\t0\n1\t0", "0\t1\t0\n1\t1", 7, "reflection"),
+            ("0\n1\n1\n0.0", "0\n2\n1\n0.0", 8, "kind"),
+            ("1\n0.0\n", "2\n90 0\n", 10, "anisotropy"),
+            ("1\n0.0\n", "2\n0 90\n", 13, "angles of incidence"),
             ("30\n30 0", "95\n30 0", 12, "incidence"),
             ("550 50", "550 150", 16, "150 %"),
             ("1\n550 50\n", "0\n", 15, "wavelength"),
@@ -168,6 +228,42 @@ mod tests {
             let problem = first(from, to);
             assert!(problem.to_string().contains(words), "{to:?}: {problem}");
             assert_eq!(problem.line, line, "{to:?}: {problem}");
+        }
+    }
+
+    /// Two anisotropy angles, of which the second scatters twice as much: a mean of both at 45 deg.
+    #[test]
+    fn several_anisotropy_angles_share_one_factor() {
+        let two = SMALL
+            .replace("1\n0.0\n1\n30\n30 0", "2\n0 90\n1\n30\n1\n30\n30 45")
+            .replace("End of file", "2 2\n\t0 360\n0 2 2\n90 2 2\nEnd of file");
+        let tables = parse(&two).expect("two tables");
+        let tis: Vec<f64> = tables.iter().map(|table| table.totals().next().expect("one").1[0]).collect();
+        assert!((tis[1] / tis[0] - 2.0).abs() < 1e-12);
+        assert_eq!(tables.iter().map(|table| table.azimuth().to_degrees().round()).collect::<Vec<_>>(), [0.0, 90.0]);
+        let brightest = crate::bsdf::Anisotropic::new(tables, 2.0).expect_err("4/3 x 50 % x 2").tis;
+        assert!((brightest - 4.0 / 3.0).abs() < 1e-9, "{brightest}");
+    }
+
+    /// The same lobe as BSDF and as intensity, of transmitted light from either normal.
+    #[test]
+    fn intensities_and_angles_from_the_other_normal_are_the_same_table() {
+        let rows = |rows: &str, kind: &str| {
+            SMALL
+                .replace("1\t0\n1\n1\n0.0", &format!("0\t1\n{kind}\n1\n0.0"))
+                .replace("2 2\n\t0 360\n0 1 1\n90 1 1", rows)
+        };
+        let plain = rows("3 2\n0 360\n0 1 1\n60 3 3\n90 3 3", "1");
+        for text in
+            [rows("3 2\n0 360\n0 1 1\n60 1.5 1.5\n90 0 0", "0"), rows("3 2\n0 360\n90 3 3\n120 3 3\n180 1 1", "1")]
+        {
+            let [a, b] = [&plain, &text].map(|text| {
+                let table = parse(text).expect("a table").remove(0);
+                let model = crate::bsdf::Tabulated::new(table, 1.0).expect("below 100 %");
+                let at = crate::optics::Incidence::in_air(0.5, 550e-9);
+                crate::bsdf::Bsdf::eval(&model, &at, glam::DVec3::new(0.48, -0.36, -0.8))
+            });
+            assert!(a > 0.0 && (a / b - 1.0).abs() < 1e-9, "{a} {b}");
         }
     }
 

@@ -6,21 +6,24 @@
 //!     ScatterType (BRDF | BTDF), and with a count and then that many angles in deg: SampleRotation, AngleOfIncidence,
 //!     ScatterAzimuth, ScatterRadial
 //!
-//! then `DataBegin` and for each angle of incidence a row `TIS number` and for each azimuth a row of values in 1/sr, one per radial angle;
+//! then `DataBegin` and for each rotation of the sample and each angle of incidence a row `TIS number` and for each azimuth a row of values in 1/sr, one per radial angle;
 //! `DataEnd`. Radial angles count from the specular ray (or the ray straight on, for BTDF), azimuths about it, from towards the normal.
 //!
 //! The stated TIS is what is scattered; the values are its shape. Where values that were not measured are extended, the TIS grows as
-//! their integral does. Refused with a message: several sample rotations, tristimulus data.
+//! their integral does. Refused with a message: tristimulus data.
+//!
+//! *Rotation.* By the description it is the angle between the normal of the plane of incidence and the sample's axis x: at 0 the sample's
+//! axis y lies in that plane. It is the lay; rotations are taken to count as azimuths of [`super::anisotropic`] do.
 
 use super::reading::{Problem, Rows, Unmeasured, shorten};
 use super::tabulated::{Beyond, Lobe, Pole, Table};
 use std::f64::consts::TAU;
 
-/// Reads the text of a file.
-pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> {
+/// Reads the text of a file: a table for every rotation of the sample.
+pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Vec<Table>, Vec<Problem>> {
     let mut file = Rows::new(text);
     match zemax(&mut file, unmeasured) {
-        Ok(table) => Ok(table),
+        Ok(tables) => Ok(tables),
         Err(last) => Err(file.all(last)),
     }
 }
@@ -30,21 +33,31 @@ pub fn parse(text: &str, unmeasured: Unmeasured) -> Result<Table, Vec<Problem>> 
 struct Axes {
     symmetric: bool,
     transmitted: bool,
+    rotation: Vec<f64>,
     incidence: Vec<f64>,
     azimuth: Vec<f64>,
     radial: Vec<f64>,
 }
 
-fn zemax(file: &mut Rows, unmeasured: Unmeasured) -> Result<Table, Problem> {
+fn zemax(file: &mut Rows, unmeasured: Unmeasured) -> Result<Vec<Table>, Problem> {
     let axes = axes(file)?;
+    let mut tables = Vec::new();
+    for rotation in &axes.rotation {
+        tables.push(table(file, &axes, unmeasured)?.turned(rotation.to_radians()));
+    }
+    match file.problems.pop() {
+        Some(last) => Err(last),
+        None => Ok(tables),
+    }
+}
+
+/// One rotation of the sample.
+fn table(file: &mut Rows, axes: &Axes, unmeasured: Unmeasured) -> Result<Table, Problem> {
     let (mut lobes, mut tis) = (Vec::new(), Vec::new());
     for incidence in &axes.incidence {
-        let (lobe, stated) = lobe(file, &axes, incidence.to_radians(), unmeasured)?;
+        let (lobe, stated) = lobe(file, axes, incidence.to_radians(), unmeasured)?;
         lobes.push(lobe);
         tis.push(stated);
-    }
-    if let Some(last) = file.problems.pop() {
-        return Err(last);
     }
     let table = Table::new(lobes, vec![(1e-6, 1.0)])
         .ok_or_else(|| file.problem("the table has no order", "rising angles of incidence below 90 deg"))?
@@ -64,20 +77,22 @@ fn axes(file: &mut Rows) -> Result<Axes, Problem> {
             ("Symmetry", "ASymmetrical") => axes.symmetric = false,
             ("ScatterType", "BRDF") => axes.transmitted = false,
             ("ScatterType", "BTDF") => axes.transmitted = true,
-            ("SampleRotation", "1") => {
-                list(file, "1", "one rotation of the sample")?;
-            }
+            ("SampleRotation", count) => axes.rotation = list(file, count, "rotations of the sample")?,
             ("AngleOfIncidence", count) => axes.incidence = list(file, count, "angles of incidence")?,
             ("ScatterAzimuth", count) => axes.azimuth = list(file, count, "azimuths")?,
             ("ScatterRadial", count) => axes.radial = list(file, count, "radial angles")?,
             ("DataBegin", _) => break,
             _ => {
-                let expected = "Symmetry PlaneSymmetrical or ASymmetrical, SpectralContent Monochrome, ScatterType BRDF or BTDF, SampleRotation 1, \
+                let expected = "Symmetry PlaneSymmetrical or ASymmetrical, SpectralContent Monochrome, ScatterType BRDF or BTDF, SampleRotation, \
                                 AngleOfIncidence, ScatterAzimuth, ScatterRadial, DataBegin";
                 return Err(file.problem(&format!("`{}` is not understood", shorten(row)), expected));
             }
         }
     }
+    if axes.rotation.is_empty() {
+        axes.rotation.push(0.0);
+    }
+    file.rising(&axes.rotation, "rotations of the sample", 0.0..360.0 + 1e-9)?;
     file.rising(&axes.incidence, "angles of incidence", 0.0..90.0)?;
     let around = if axes.symmetric { 180.0 } else { 360.0 };
     file.rising(&axes.azimuth, "azimuths", 0.0..around + 1e-9)?;
@@ -177,7 +192,9 @@ mod tests {
 
     #[test]
     fn the_stated_tis_is_scattered_and_grows_with_what_is_added() {
-        let tis = |rule| parse(&SMALL.replace('\n', "\r\n"), rule).expect("a table").totals().next().expect("one").1[0];
+        let tis = |rule| {
+            parse(&SMALL.replace('\n', "\r\n"), rule).expect("a table").remove(0).totals().next().expect("one").1[0]
+        };
         assert_eq!(tis(Unmeasured::Zero), 0.2);
         assert!(tis(Unmeasured::Hold) > 0.2);
     }
@@ -187,7 +204,9 @@ mod tests {
         for (from, to, line, words) in [
             ("Monochrome\nScatterType", "XYZ\nScatterType", 4, "XYZ"),
             ("BRDF", "both", 5, "ScatterType both"),
-            ("SampleRotation 1\n0", "SampleRotation 2\n0 90", 6, "SampleRotation 2"),
+            ("SampleRotation 1\n0", "SampleRotation 2\n0", 7, "found 1"),
+            ("SampleRotation 1\n0", "SampleRotation 2\n90 0", 16, "rotations"),
+            ("SampleRotation 1\n0", "SampleRotation 2\n0 90", 20, "DataEnd"),
             ("Incidence 1\n30", "Incidence 1\n95", 16, "incidence"),
             ("Azimuth 2\n0 180", "Azimuth 2\n0 170", 16, "180"),
             ("Radial 3", "Radial 4", 13, "found 3"),

@@ -80,7 +80,16 @@ fn read(text: &str, rule: Unmeasured, file: &Path) -> Result<tabulated::Table, E
         let span = Span { line: fault.line.try_into().unwrap_or(u32::MAX), column: 1, len: 1 };
         Problem::error(fault.message).expecting(fault.expected).at(span).in_file(file)
     };
-    reading::parse(text, rule).map_err(|faults| Error::Input(faults.into_iter().map(problem).collect()))
+    let tables = reading::parse(text, rule);
+    let mut tables = tables.map_err(|faults| Error::Input(faults.into_iter().map(problem).collect()))?;
+    match tables.pop() {
+        Some(only) if tables.is_empty() => Ok(only),
+        _ => {
+            let several = Problem::error("the table depends on the azimuth of the sample");
+            let expected = "one that is the same about its normal: the laws are";
+            Err(Error::Input(vec![several.expecting(expected).in_file(file)]))
+        }
+    }
 }
 
 /// Factor on the values of a table: at its shortest wavelength.

@@ -43,8 +43,8 @@ mod tests {
     fn what_cannot_be_refracted_is_reflected() {
         let at = Incidence {
             wi: DVec3::new(0.8, 0.0, 0.6),
-            wavelength: 550e-9,
             index: [Complex64::new(1.5, 0.0), Complex64::new(1.0, 0.0)],
+            ..Incidence::in_air(0.0, 550e-9)
         };
         let split = Ideal { reflectance: 0.005, transmittance: 0.99 }.split(&at);
         assert!((split.reflected.unpolarised() - 0.995).abs() < 1e-15);

@@ -16,7 +16,7 @@ impl Response {
     /// Light of vacuum wavelength `wavelength` (m) that arrives at angle `theta` (rad, below pi/2) from the first index towards the second.
     pub fn of(coating: &dyn Coating, index: [Complex64; 2], wavelength: f64, theta: f64) -> Response {
         let wi = DVec3::new(theta.sin(), 0.0, theta.cos());
-        let split = coating.split(&Incidence { wi, wavelength, index });
+        let split = coating.split(&Incidence { index, ..Incidence::in_air(theta, wavelength) });
         let [mut reflected, mut transmitted] =
             [split.reflected, split.transmitted].map(|a| [a.s.norm_sqr(), a.p.norm_sqr()]);
         if refraction::refract(wi, index[0].re, index[1].re).is_none() {

@@ -1,5 +1,6 @@
 //! Mathematics with no optics in it: random numbers, low-discrepancy points, sampling, tables, statistics, least squares.
 
+pub mod alias;
 pub mod eigen;
 pub mod elliptic;
 pub mod least_squares;

@@ -58,6 +58,8 @@ pub struct Surface {
     own: usize,
     /// See [`Coating::axis`].
     pub axis: Option<DVec3>,
+    /// Unit, in the scene: the direction from which lobes that are not isotropic count azimuths, projected on the surface.
+    pub lay: Option<DVec3>,
 }
 
 /// The bill of one arrival, fractions of the incident flux: what each branch gets, before polarisation.
@@ -84,7 +86,12 @@ impl Surface {
         let opaque = specular.as_ref().is_none_or(|c| c.opaque()) && !lobes.iter().any(|l| l.transmits());
         let axis = specular.as_ref().and_then(|coating| coating.axis());
         let own = lobes.len();
-        Surface { label, specular, lobes, order, scattering, opaque, dust: None, own, axis }
+        Surface { label, specular, lobes, order, scattering, opaque, dust: None, own, axis, lay: None }
+    }
+
+    /// The same surface with a lay.
+    pub fn laid(self, lay: Option<DVec3>) -> Surface {
+        Surface { lay, ..self }
     }
 
     /// The same surface with a deposit on it; `behind`: light meets the surface first and the deposit behind it.

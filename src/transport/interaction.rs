@@ -12,7 +12,7 @@ use crate::packet::{Event, Packet};
 use crate::scene::{Crossed, Scene};
 use crate::surface::{Scattering, Shares, Surface};
 use crate::tally::layout::{Cut, Loss};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// What one arrival comes to, per lane. Stokes vectors are in the frame whose x is s, W.
 struct Bill<const V: usize> {
@@ -31,7 +31,8 @@ struct Meeting<'a, const V: usize> {
     surfaces: [&'a Surface; V],
     shares: [Shares; V],
     frame: Frame,
-    at: Incidence,
+    /// The same for all lanes but for the lay of their surfaces.
+    at: [Incidence; V],
     /// Local direction of the refracted ray, if there is one.
     refracted: Option<DVec3>,
 }
@@ -64,12 +65,18 @@ fn meet<'a, const V: usize>(scene: &'a Scene, packet: &Packet<V>, crossed: Cross
     // At grazing incidence the sign of d.n may round the other way; the hit knows better.
     wi.z = wi.z.max(f64::MIN_POSITIVE);
     let index = crossed.media.map(|medium| scene.index(medium, packet.wavelength));
-    let at = Incidence { wi, wavelength: packet.wavelength, index };
     let surfaces: [&Surface; V] = std::array::from_fn(|lane| scene.surface(hit, lane));
-    let shares = surfaces.map(|surface| surface.shares(&at));
+    let at = surfaces.map(|surface| Incidence { wi, wavelength: packet.wavelength, index, lay: lay(surface, &frame) });
+    let shares = std::array::from_fn(|lane| surfaces[lane].shares(&at[lane]));
     let refracted = refraction::refract(wi, index[0].re, index[1].re);
     let part = scene.part_of[hit.triangle as usize];
     Meeting { crossed, front: hit.front, part, surfaces, shares, frame, at, refracted }
+}
+
+/// The lay of a surface along its tangent plane, local; x where it has none or stands upright.
+fn lay(surface: &Surface, frame: &Frame) -> DVec2 {
+    let along = surface.lay.and_then(|lay| frame.to_local(lay).truncate().try_normalize());
+    along.unwrap_or(DVec2::X)
 }
 
 fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
@@ -219,7 +226,7 @@ fn leave<const V: usize>(
     way: Event,
     factor: f64,
 ) -> bool {
-    let wi = meeting.at.wi;
+    let wi = meeting.at[0].wi;
     let local = match way {
         Event::Reflect => Some(refraction::reflect(wi)),
         Event::Transmit => meeting.refracted,
@@ -249,12 +256,12 @@ fn scatter<const V: usize>(
         rest < 0.0
     });
     let lane = lane.unwrap_or(V - 1);
-    let Some(wo) = surfaces[lane].draw(at, &shares[lane], &mut packet.rng) else { return false };
-    let density: f64 = (0..V).map(|l| bill.scattered[l] / total * surfaces[l].density(at, &shares[l], wo)).sum();
+    let Some(wo) = surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng) else { return false };
+    let density: f64 = (0..V).map(|l| bill.scattered[l] / total * surfaces[l].density(&at[l], &shares[l], wo)).sum();
     for l in 0..V {
         // `scattered` may have been cut to zero by a limit in this lane only.
         let alive = (bill.scattered[l] > 0.0) as u8 as f64;
-        let flux = alive * packet.light[l].i * surfaces[l].value(at, &shares[l], wo) / density;
+        let flux = alive * packet.light[l].i * surfaces[l].value(&at[l], &shares[l], wo) / density;
         packet.light[l] = Stokes::unpolarised(flux * factor);
     }
     depart(packet, crossing, meeting, wo, Event::Scatter);
@@ -283,7 +290,7 @@ fn watch<const V: usize, W: Watch>(
     walk.watch.event(|| {
         let flux = packet.light[0].i;
         let leaving = [bill.reflected[0].i / flux, bill.transmitted[0].i / flux, bill.scattered[0] / flux];
-        let wi = meeting.at.wi;
+        let wi = meeting.at[0].wi;
         Sight {
             depth: packet.ancestry.events,
             point: crossing.point,

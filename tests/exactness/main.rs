@@ -13,6 +13,7 @@ mod ghosts;
 mod interfaces;
 #[allow(dead_code, reason = "one bench, several test targets")]
 mod lab;
+mod lay;
 mod ledger;
 mod media;
 mod mixed;

@@ -30,7 +30,7 @@ fn dirty() -> Arc<Deposit> {
     DIRTY.get_or_init(|| Arc::new(deposit(800.0, 0.926))).clone()
 }
 
-fn by_key<'a>(value: &'a Value, name: &str) -> Vec<(f64, f64)> {
+fn by_key(value: &Value, name: &str) -> Vec<(f64, f64)> {
     let map = value[name].as_object().unwrap_or_else(|| panic!("no {name}"));
     map.iter().map(|(key, v)| (key.parse().expect("a number"), v.as_f64().expect("a number"))).collect()
 }
@@ -102,12 +102,9 @@ fn a_dusty_surface_never_sends_on_more_than_arrives() {
 #[test]
 fn what_is_drawn_carries_what_is_scattered() {
     let mirror: Arc<dyn Coating> = Arc::new(Mirror { reflectance: 0.9 });
-    let cases: [(&str, Option<Arc<dyn Coating>>, bool); 4] = [
-        ("wall", None, false),
-        ("mirror", Some(mirror), false),
-        ("glass", Some(Arc::new(Bare)), false),
-        ("inside", Some(Arc::new(Bare)), true),
-    ];
+    let bare = || Some(Arc::new(Bare) as Arc<dyn Coating>);
+    let cases =
+        [("wall", None, false), ("mirror", Some(mirror), false), ("glass", bare(), false), ("inside", bare(), true)];
     for (which, (name, coating, behind)) in cases.into_iter().enumerate() {
         let surface = surface(coating, dirty(), behind);
         for (step, angle) in [0.0, 40.0, 75.0].into_iter().enumerate() {

@@ -133,7 +133,7 @@ fn family() -> Vec<(Box<dyn Coating>, Complex64, Complex64)> {
 }
 
 fn incidence(cos: f64, index: [Complex64; 2]) -> Incidence {
-    Incidence { wi: DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos), wavelength: 550e-9, index }
+    Incidence { wi: DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos), index, ..Incidence::in_air(0.0, 550e-9) }
 }
 
 proptest! {

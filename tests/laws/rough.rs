@@ -56,8 +56,9 @@ fn refraction_by_facets_is_reciprocal_between_media() {
             let above = DVec3::new(ti.sin(), 0.0, ti.cos());
             let below = DVec3::new(ts.sin() * phi.cos(), ts.sin() * phi.sin(), -ts.cos());
             let turned = |w: DVec3| DVec3::new(w.x, w.y, -w.z);
-            let go = lobe.eval(&Incidence { wi: above, wavelength: 550e-9, index: [n1, n2] }, below);
-            let back = lobe.eval(&Incidence { wi: turned(below), wavelength: 550e-9, index: [n2, n1] }, turned(above));
+            let at = |wi: DVec3, index| Incidence { wi, index, ..Incidence::in_air(0.0, 550e-9) };
+            let go = lobe.eval(&at(above, [n1, n2]), below);
+            let back = lobe.eval(&at(turned(below), [n2, n1]), turned(above));
             assert!(go > 0.0);
             close(go / back, n2.re * n2.re, 1e-9, "f_it / n_t^2 = f_ti / n_i^2");
         }

@@ -71,13 +71,13 @@ fn profile() -> PsdTable {
 /// The plausible wall of the triplet.
 pub fn anodize() -> Tabulated {
     let text = include_str!("../../systems/triplet/black-anodize-plausible.anisotropicbsdf");
-    Tabulated::new(speos::parse(text).expect("a good table"), 1.0).expect("below 100 %")
+    Tabulated::new(speos::parse(text).expect("a good table").remove(0), 1.0).expect("below 100 %")
 }
 
 /// A measured anodize whose table counts angles from the specular ray.
 pub fn zemax() -> Tabulated {
     let text = include_str!("../data/bsdf/AnoBlackEC1onAlum.bsdf");
-    Tabulated::new(zemax::parse(text, Unmeasured::Zero).expect("a good table"), 1.0).expect("below 100 %")
+    Tabulated::new(zemax::parse(text, Unmeasured::Zero).expect("a good table").remove(0), 1.0).expect("below 100 %")
 }
 
 /// Incidences in air and in glass, from normal to grazing; for transmission also beyond the critical angle.
@@ -270,7 +270,7 @@ fn p_value(model: &dyn Bsdf, at: &Incidence, expected: &[f64], seed: u64) -> f64
 }
 
 /// p-value of the bins that `draw` gives against their probabilities.
-fn chi_squared(draws: u32, expected: &[f64], mut draw: impl FnMut() -> Option<usize>) -> f64 {
+pub fn chi_squared(draws: u32, expected: &[f64], mut draw: impl FnMut() -> Option<usize>) -> f64 {
     let mut count = vec![0u32; expected.len()];
     let mut none = 0u32;
     for _ in 0..draws {

@@ -176,8 +176,9 @@ fn polish(rms: f64) -> KCorrelation {
 
 fn table(text: &str, name: &str) -> Result<Tabulated, Problem> {
     let broken = |what: String| Problem::error(format!("the library's table of {name:?} is broken: {what}"));
-    let table = reading::parse(text, reading::Unmeasured::Hold)
+    let tables = reading::parse(text, reading::Unmeasured::Hold)
         .map_err(|all| broken(all.first().map_or(String::new(), ToString::to_string)))?;
+    let table = tables.into_iter().next().ok_or_else(|| broken("it is empty".into()))?;
     Tabulated::new(table, 1.0).map_err(|bright| broken(bright.to_string()))
 }
 

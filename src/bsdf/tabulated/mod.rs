@@ -19,9 +19,8 @@
 //!
 //! Transmitted lobes are the same, mirrored in the surface: about the ray that goes straight on, with angles in the medium beyond.
 //!
-//! Left out: dependence on the azimuth of the sample (lay), polarisation; reciprocity is as good as the table.
+//! Left out: dependence on the azimuth of the sample ([`super::anisotropic`]), polarisation; reciprocity is as good as the table.
 
-mod alias;
 mod grid;
 mod lobe;
 mod shape;
@@ -54,6 +53,8 @@ pub struct Table {
     tis: Vec<f64>,
     /// True if the lobes are those of transmitted light, about the ray that goes straight on.
     transmitted: bool,
+    /// Azimuth of the light's travel from the lay, rad; for tables at several.
+    azimuth: f64,
 }
 
 impl Table {
@@ -67,7 +68,7 @@ impl Table {
             return None;
         }
         let tis = lobes.iter().map(Lobe::tis).collect();
-        Some(Table { incidence, lobes, wavelength, factor, tis, transmitted: false })
+        Some(Table { incidence, lobes, wavelength, factor, tis, transmitted: false, azimuth: 0.0 })
     }
 
     /// The same shapes with a stated scattered / incident flux for each incidence (as many).
@@ -93,6 +94,16 @@ impl Table {
     /// True if the lobes are those of transmitted light.
     pub fn is_transmitted(&self) -> bool {
         self.transmitted
+    }
+
+    /// The same table at an azimuth (rad) of the light's travel from the lay.
+    pub fn turned(self, azimuth: f64) -> Table {
+        Table { azimuth, ..self }
+    }
+
+    /// Azimuth of the light's travel from the lay, rad; 0 if there is but one.
+    pub fn azimuth(&self) -> f64 {
+        self.azimuth
     }
 
     /// Scattered / incident flux by angle of incidence (rad) at factor 1: as it is used, and as the lobes integrate.
@@ -129,7 +140,12 @@ pub struct Tabulated {
 impl Tabulated {
     /// The table with every value multiplied by `scale` (>= 0). Memory and time grow with the inverse square of the table's finest step:
     /// 15 MB and 0.1 s for steps of 1 by 10 deg, at most about 64 MB. Fails if it scatters more light than arrives.
-    pub fn new(mut table: Table, scale: f64) -> Result<Tabulated, TooBright> {
+    pub fn new(table: Table, scale: f64) -> Result<Tabulated, TooBright> {
+        Tabulated::among(1, table, scale)
+    }
+
+    /// The same as one of `count` (>= 1) tables that together have the memory of one.
+    pub fn among(count: usize, mut table: Table, scale: f64) -> Result<Tabulated, TooBright> {
         table.factor.iter_mut().for_each(|f| *f *= scale);
         let tis = table.tis;
         let brightest = table.factor.iter().copied().fold(0.0, f64::max);
@@ -140,7 +156,7 @@ impl Tabulated {
             }
         }
         let shape = Shape { incidence: table.incidence, lobes: table.lobes };
-        let (grid, nodes) = resolution(&shape);
+        let (grid, nodes) = resolution(&shape, MOST / count as f64);
         let sheet = |&theta: &f64| {
             let plane = Plane::at(theta);
             let value = grid.corners().map(|d| shape.at(&plane, d)).collect();
@@ -194,11 +210,11 @@ const MOST: f64 = 2.5e6;
 const STEEP: f64 = FRAC_PI_3;
 
 /// The grid of the sheets and their nodes of incidence. Rings and steps of incidence are as fine as the table's finest step of theta, but
-/// within 0.25 to 1.5 deg, and coarser where memory asks for it; the table's own incidences are nodes.
-fn resolution(shape: &Shape) -> (Grid, Vec<f64>) {
+/// within 0.25 to 1.5 deg, and coarser where memory (`most` corners) asks for it; the table's own incidences are nodes.
+fn resolution(shape: &Shape, most: f64) -> (Grid, Vec<f64>) {
     let phi = sectors(&shape.azimuths());
     let finest = shape.lobes.iter().map(Lobe::finest).fold(f64::INFINITY, f64::min);
-    let smallest = FRAC_PI_2 * (phi.len() as f64 / MOST).sqrt();
+    let smallest = FRAC_PI_2 * (phi.len() as f64 / most).sqrt();
     let step = finest.clamp(0.25f64.to_radians(), 1.5f64.to_radians()).max(smallest);
     let mut nodes = vec![0.0];
     for &end in shape.incidence.iter().chain([&FRAC_PI_2]) {
@@ -290,7 +306,7 @@ mod tests {
     #[test]
     fn the_grid_keeps_to_the_table() {
         let text = include_str!("../../../systems/triplet/black-anodize-plausible.anisotropicbsdf");
-        let table = speos::parse(text).expect("a good table");
+        let table = speos::parse(text).expect("a good table").remove(0);
         let shape = Shape { incidence: table.incidence.clone(), lobes: table.lobes.clone() };
         let model = Tabulated::new(table, 1.0).expect("below 100 %");
         // At the table's incidences, between them, and where its last lobe is turned farthest.
@@ -318,7 +334,9 @@ mod tests {
         let value = vec![0.1; theta.len() * phi.len()];
         let lobe = Lobe::new(0.3, theta, phi, value).expect("a lobe");
         let shape = Shape { incidence: vec![0.3], lobes: vec![lobe] };
-        let (grid, nodes) = resolution(&shape);
-        assert!(((grid.len() * nodes.len()) as f64) < 1.1 * MOST, "{} x {}", grid.len(), nodes.len());
+        for most in [MOST, MOST / 8.0] {
+            let (grid, nodes) = resolution(&shape, most);
+            assert!(((grid.len() * nodes.len()) as f64) < 1.1 * most, "{} x {}", grid.len(), nodes.len());
+        }
     }
 }

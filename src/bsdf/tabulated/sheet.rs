@@ -1,7 +1,7 @@
 //! A function on a grid, bilinear in its coordinates: evaluated, integrated and drawn from, all exactly the same function.
 
-use super::alias::Alias;
 use super::grid::{Grid, Place, invert};
+use crate::math::alias::Alias;
 use glam::DVec3;
 
 /// BRDF at one incidence over a [`Grid`], bilinear in (q, phi).

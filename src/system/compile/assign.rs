@@ -235,9 +235,8 @@ fn part(
     let mut side = |front: bool| {
         let mut finish = finish(shop, entries, front, transparent);
         let sided = finish.coating.as_ref().and_then(|name| coatings.get(name));
-        let dusty = finish.scatter.as_ref().and_then(|name| shop.document.system.scatter.get(name));
-        let dusty = dusty.is_some_and(|model| model.contamination().is_some());
-        let faced = (dusty && transparent) || sided.is_some_and(|[a, b]| !Arc::ptr_eq(a, b));
+        let scatter = finish.scatter.as_ref().and_then(|name| shop.document.system.scatter.get(name));
+        let faced = scatter.is_some_and(written::Scatter::is_sided) || sided.is_some_and(|[a, b]| !Arc::ptr_eq(a, b));
         finish.side = faced.then_some(if front { Side::Front } else { Side::Back });
         if finish.is_unsaid() {
             unassigned(shop, assembly, node, &label);
@@ -270,6 +269,7 @@ fn finish(shop: &Shop, entries: &[u16], front: bool, transparent: bool) -> Finis
         }
         finish.scatter = written.scatter.clone().or(finish.scatter);
         finish.order = written.order.unwrap_or(finish.order);
+        finish.lay = written.lay.or(finish.lay);
         finish.scattering = written.scattering.unwrap_or(finish.scattering);
     }
     if finish.is_unsaid() && !transparent {
@@ -281,6 +281,7 @@ fn finish(shop: &Shop, entries: &[u16], front: bool, transparent: bool) -> Finis
             finish.coating = default.coating.clone();
             finish.scatter = default.scatter.clone();
             finish.order = default.order.unwrap_or_default();
+            finish.lay = default.lay;
             finish.scattering = default.scattering.unwrap_or_default();
         }
     }

@@ -8,6 +8,7 @@ use crate::error::Problem;
 use crate::scene::Filling;
 use crate::surface::{Order, Scattering, Surface};
 use crate::system::document as written;
+use crate::system::units::Direction;
 
 /// What one side of a part is, with every field settled.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,7 +19,9 @@ pub struct Finish {
     pub scatter: Option<String>,
     pub order: written::Order,
     pub scattering: written::Scattering,
-    /// The side it is on, of a coating that is not the same from both, or if particles lie on the front.
+    /// Direction from which azimuths count, of scatter that depends on them.
+    pub lay: Option<Direction>,
+    /// The side it is on, of a coating or a scatter model that is not the same from both.
     pub side: Option<Side>,
 }
 
@@ -58,7 +61,14 @@ impl Finish {
             let problem = Problem::error(what).expecting("`order: Scaled` on every surface that has it");
             shop.fault(&format!("scatter[{name:?}]"), problem);
         }
-        let lobes = scatter.map_or(Vec::new(), |(name, model)| lobes(shop, model, &format!("scatter[{name:?}]")));
+        let side = self.side.unwrap_or(Side::Front);
+        let lobes = scatter.map_or(Vec::new(), |(name, model)| lobes(shop, model, side, &format!("scatter[{name:?}]")));
+        let lay = self.lay.map(|lay| lay.0);
+        if let Some((name, _)) = scatter.filter(|_| lay.is_none() && lobes.iter().any(|lobe| lobe.anisotropic())) {
+            let what = format!("{name:?} depends on the azimuth of the light, and this surface has no lay");
+            let problem = Problem::error(what).expecting("`lay: \"(x, y, z)\"` on every surface that has it");
+            shop.fault(&format!("scatter[{name:?}]"), problem);
+        }
         let order = match self.order {
             written::Order::ScatterFirst => Order::ScatterFirst,
             written::Order::Scaled => Order::Scaled,
@@ -68,7 +78,7 @@ impl Finish {
             written::Scattering::On => Scattering::On,
             written::Scattering::Off => Scattering::Off,
         };
-        let surface = Surface::new(self.label(), specular, lobes, order, scattering);
+        let surface = Surface::new(self.label(), specular, lobes, order, scattering).laid(lay);
         match scatter.and_then(|(name, model)| deposit(shop, name, model, &format!("scatter[{name:?}]"))) {
             Some(deposit) => surface.under(deposit, self.side == Some(Side::Back)),
             None => surface,

@@ -3,7 +3,9 @@
 use super::Shop;
 use super::media::{self, load};
 use crate::bsdf::contamination::{Deposit, distribution};
+use crate::bsdf::klems::{Face, Matrix};
 use crate::bsdf::{self, Bsdf, finish};
+use crate::coating::Side;
 use crate::error::{Problem, Span};
 use crate::medium;
 use crate::source::Source;
@@ -16,8 +18,8 @@ use std::sync::Arc;
 /// Wavelengths of a continuous spectrum at which particles are worked out: half a second each.
 const DEPOSIT_POINTS: u32 = 6;
 
-/// The lobes of a scatter model; tables are read from their files.
-pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box<dyn Bsdf>> {
+/// The lobes of a scatter model for light on one side of the surface; tables are read from their files.
+pub fn lobes(shop: &mut Shop, written: &written::Scatter, side: Side, path: &str) -> Vec<Box<dyn Bsdf>> {
     match written {
         written::Scatter::Lambertian { reflectance, transmittance } => {
             // A diffuser that passes light is two lobes, one on each side: the coating may scale them apart.
@@ -36,8 +38,12 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, path: &str) -> Vec<Box
                 Vec::new()
             }
         },
+        written::Scatter::Klems { file, scale, band } => {
+            let face = if side == Side::Front { Face::Front } else { Face::Back };
+            klems(shop, (file, band), *scale, face, path)
+        }
         written::Scatter::Sum(parts) => {
-            parts.iter().enumerate().flat_map(|(i, part)| lobes(shop, part, &format!("{path}[{i}]"))).collect()
+            parts.iter().enumerate().flat_map(|(i, part)| lobes(shop, part, side, &format!("{path}[{i}]"))).collect()
         }
         written::Scatter::Microfacet { distribution, alpha, facets, side, energy } => {
             let distribution = match distribution {
@@ -187,30 +193,67 @@ fn table(
     unmeasured: written::Unmeasured,
     path: &str,
 ) -> Option<Box<dyn Bsdf>> {
-    let resolved = shop.document.resolve(file);
-    let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
     let rule = match unmeasured {
         written::Unmeasured::Zero => bsdf::reading::Unmeasured::Zero,
         written::Unmeasured::Hold => bsdf::reading::Unmeasured::Hold,
     };
-    let table = match bsdf::reading::parse(&text, rule) {
-        Ok(table) => table,
-        Err(faults) => {
-            let place = |line: usize| Span { line: line as u32, column: 1, len: 1 };
-            let problem = |fault: bsdf::reading::Problem| {
-                Problem::error(fault.message).expecting(fault.expected).at(place(fault.line)).in_file(&resolved)
-            };
-            shop.problems.extend(faults.into_iter().map(problem));
-            return None;
-        }
+    let mut tables = read(shop, file, path, |text| bsdf::reading::parse(text, rule))?;
+    tables.iter().for_each(|table| contradictions(shop, table, path));
+    let made: Result<Box<dyn Bsdf>, _> = if tables.len() == 1 {
+        bsdf::Tabulated::new(tables.remove(0), scale).map(|lobe| Box::new(lobe) as Box<dyn Bsdf>)
+    } else {
+        bsdf::Anisotropic::new(tables, scale).map(|lobe| Box::new(lobe) as Box<dyn Bsdf>)
     };
-    contradictions(shop, &table, path);
-    match bsdf::Tabulated::new(table, scale) {
-        Ok(table) => Some(Box::new(table)),
+    match made {
+        Ok(lobe) => Some(lobe),
         Err(bright) => {
             shop.fault(path, Problem::error(bright.to_string()));
             None
         }
+    }
+}
+
+/// What a reader makes of the text of a file; its complaints are noted.
+fn read<T>(
+    shop: &mut Shop,
+    file: &Path,
+    path: &str,
+    parse: impl FnOnce(&str) -> Result<T, Vec<bsdf::reading::Problem>>,
+) -> Option<T> {
+    let resolved = shop.document.resolve(file);
+    let bytes = load(shop, file, path)?;
+    let noted = |fault: bsdf::reading::Problem| {
+        let place = Span { line: fault.line as u32, column: 1, len: 1 };
+        Problem::error(fault.message).expecting(fault.expected).at(place).in_file(&resolved)
+    };
+    parse(&String::from_utf8_lossy(&bytes)).map_err(|faults| shop.problems.extend(faults.into_iter().map(noted))).ok()
+}
+
+/// The lobes of a sheet for light on one face: what it reflects and what it passes.
+fn klems(shop: &mut Shop, (file, band): (&Path, &str), scale: f64, face: Face, path: &str) -> Vec<Box<dyn Bsdf>> {
+    let Some(mut matrices) = read(shop, file, path, |text| bsdf::klems_xml::parse(text, band)) else {
+        return Vec::new();
+    };
+    matrices.retain(|matrix| matrix.face == face);
+    let most = scale * brightest(&matrices);
+    // As bright as the rounding of six decimals in each patch can make it.
+    if most > 1.0 + 1e-5 {
+        let what = format!("light on the {face:?} leaves with {:.1} % of its flux", 100.0 * most).to_lowercase();
+        shop.fault(path, Problem::error(what).expecting("at most 100 %"));
+        return Vec::new();
+    }
+    let lobe = |matrix| -> Box<dyn Bsdf> { Box::new(bsdf::Klems::new(matrix, scale / most.max(1.0))) };
+    matrices.into_iter().map(lobe).collect()
+}
+
+/// Greatest scattered / incident flux of what a face reflects and passes together.
+fn brightest(matrices: &[Matrix]) -> f64 {
+    let greatest = |albedo: Vec<f64>| albedo.into_iter().fold(0.0, f64::max);
+    match matrices {
+        [one, other] if one.incident == other.incident => {
+            greatest(one.albedo().iter().zip(other.albedo()).map(|(a, b)| a + b).collect())
+        }
+        _ => matrices.iter().map(|matrix| greatest(matrix.albedo())).sum(),
     }
 }
 

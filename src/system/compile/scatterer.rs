@@ -4,7 +4,7 @@ use super::scatter::{lobes, particles, rms};
 use super::{Shop, media};
 use crate::bsdf::Bsdf;
 use crate::bsdf::contamination::Deposit;
-use crate::coating::Mirror;
+use crate::coating::{Mirror, Side};
 use crate::error::{Error, Problem, did_you_mean, printable};
 use crate::optics::Incidence;
 use crate::surface::dust::Dust;
@@ -28,7 +28,7 @@ pub struct Scatterer {
 }
 
 impl Scatterer {
-    /// Light that arrives at `theta` (rad) from the normal, in the xz plane.
+    /// Light that arrives at `theta` (rad) from the normal, in the xz plane, along which the lay is.
     pub fn arrival(&self, theta: f64) -> Incidence {
         Incidence { index: self.index, ..Incidence::in_air(theta, self.wavelength) }
     }
@@ -51,7 +51,7 @@ impl Scatterer {
     }
 }
 
-/// The scatter model `name` of a document between the named media (else the ambient medium), and warnings.
+/// The scatter model `name` of a document, on its front, between the named media (else the ambient medium), and warnings.
 pub fn scatterer(
     document: &Document,
     name: &str,
@@ -63,7 +63,7 @@ pub fn scatterer(
     let written =
         models.get(name).ok_or_else(|| unknown("scatter model", name, &models.names().collect::<Vec<_>>()))?;
     let media = media::media(&mut shop);
-    let mut lobes = lobes(&mut shop, written, &format!("scatter[{name:?}]"));
+    let mut lobes = lobes(&mut shop, written, Side::Front, &format!("scatter[{name:?}]"));
     if shop.problems.iter().any(Problem::is_error) {
         return Err(Error::Input(shop.problems));
     }

@@ -269,7 +269,7 @@ impl Document {
 /// The tables that a scatter model reads, each with its path in the document.
 fn tables<'a>(scatter: &'a Scatter, path: &str, files: &mut Vec<(String, &'a Path)>) {
     match scatter {
-        Scatter::Table { file, .. } => files.push((format!("{path}.file"), file)),
+        Scatter::Table { file, .. } | Scatter::Klems { file, .. } => files.push((format!("{path}.file"), file)),
         Scatter::Sum(parts) => {
             parts.iter().enumerate().for_each(|(at, part)| tables(part, &format!("{path}[{at}]"), files));
         }

@@ -117,6 +117,17 @@ pub enum Scatter {
         #[serde(default)]
         unmeasured: Unmeasured,
     },
+    /// A sheet known patch by patch: a Klems matrix, for light on either face.
+    Klems {
+        /// An XML file of LBNL WINDOW or Radiance, relative to the system file.
+        file: PathBuf,
+        /// Factor on the scattered flux, dimensionless, >= 0.
+        #[serde(default = "one")]
+        scale: f64,
+        /// Which of the file's bands of wavelengths.
+        #[serde(default = "visible")]
+        band: String,
+    },
     /// Particles on the surface: a dilute layer of spheres (Mie), on the front of a transparent body.
     Contamination {
         /// Cleanliness level of IEST-STD-CC1246, >= 1.
@@ -247,6 +258,15 @@ impl Scatter {
         }
     }
 
+    /// True if it is not the same from both sides of a surface.
+    pub fn is_sided(&self) -> bool {
+        match self {
+            Scatter::Contamination { .. } | Scatter::Klems { .. } => true,
+            Scatter::Sum(parts) => parts.iter().any(Scatter::is_sided),
+            _ => false,
+        }
+    }
+
     /// True if a part of it is the scatter of a shape alone, to be scaled by the reflectance and transmittance of the coating.
     pub fn is_of_shape(&self) -> bool {
         match self {
@@ -260,6 +280,10 @@ impl Scatter {
 
 fn one() -> f64 {
     1.0
+}
+
+fn visible() -> String {
+    "Visible".to_owned()
 }
 
 /// The standard's.

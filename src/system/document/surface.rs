@@ -29,6 +29,9 @@ pub struct Surface {
     /// Which side this entry is about; the front is where normals point to. What no entry says of the other side: an
     /// opaque part absorbs there, a face of glass is a bare interface.
     pub side: Option<Side>,
+    /// Along what the surface was ground, brushed or woven, in the world; light sees its projection on the surface. Scatter that
+    /// depends on the azimuth counts it from here.
+    pub lay: Option<Direction>,
     /// Whether scatter is on.
     pub scattering: Option<Scattering>,
     /// Which solid wins where two overlap: the higher number.
@@ -53,6 +56,7 @@ impl Surface {
             scatter: None,
             order: None,
             side: None,
+            lay: None,
             scattering: None,
             priority: None,
             between: None,
@@ -76,6 +80,8 @@ pub struct Finish {
     pub order: Option<Order>,
     /// Which side this is about; the other side absorbs.
     pub side: Option<Side>,
+    /// Along what the surfaces were ground, brushed or woven, in the world.
+    pub lay: Option<Direction>,
     /// Whether scatter is on.
     pub scattering: Option<Scattering>,
 }

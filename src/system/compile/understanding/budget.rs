@@ -59,7 +59,7 @@ pub(super) fn uses(scene: &Scene) -> BTreeSet<Use> {
 pub(super) fn share(scene: &Scene, surface: &Surface, media: [u16; 2], theta: f64, wavelength: f64) -> Share {
     let index = media.map(|medium| scene.index(medium, wavelength));
     let wi = DVec3::new(theta.sin(), 0.0, theta.cos());
-    let at = Incidence { wi, wavelength, index };
+    let at = Incidence { index, ..Incidence::in_air(theta, wavelength) };
     let shares = surface.shares(&at);
     let [back, through] = if surface.lobes.is_empty() { [0.0; 2] } else { surface.albedo(&at) };
     let power = |of: fn(&crate::optics::Split) -> f64| shares.split.as_ref().map_or(0.0, of);

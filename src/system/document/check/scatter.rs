@@ -69,6 +69,11 @@ impl Checker<'_> {
                     self.push(path, problem);
                 }
             }
+            Scatter::Klems { file, scale, band } => {
+                self.file(file, path);
+                self.not_negative(*scale, &format!("{path}.scale"));
+                self.not_empty(band, &format!("{path}.band"), "the name of the band");
+            }
             Scatter::Contamination { .. } => self.contamination(scatter, path),
             Scatter::Sum(parts) => {
                 self.require(!parts.is_empty(), path, || Problem::error("this sum has no parts"));
