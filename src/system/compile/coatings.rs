@@ -190,7 +190,13 @@ fn table(shop: &mut Shop, file: Option<&Path>, rows: Option<&[written::Row]>, pa
     };
     let text = String::from_utf8_lossy(&load(shop, file, path)?).into_owned();
     match tabulated::parse(text.trim_start_matches('\u{feff}')) {
-        Ok(rows) => tabulated(shop, &rows, path),
+        Ok(rows) => {
+            let whole = |problem: Problem| {
+                let message = format!("{:?}: {}", file.display().to_string(), problem.message);
+                Problem { message, ..problem }
+            };
+            made(shop, Tabulated::new(&rows, Side::Front).map_err(whole), path)
+        }
         Err(problems) => {
             let resolved = shop.document.resolve(file);
             shop.problems.extend(problems.into_iter().map(|problem| problem.in_file(&resolved)));
@@ -200,7 +206,11 @@ fn table(shop: &mut Shop, file: Option<&Path>, rows: Option<&[written::Row]>, pa
 }
 
 fn tabulated(shop: &mut Shop, rows: &[tabulated::Row], path: &str) -> Option<Faces> {
-    match Tabulated::new(rows, Side::Front) {
+    made(shop, Tabulated::new(rows, Side::Front), path)
+}
+
+fn made(shop: &mut Shop, table: Result<Tabulated, Problem>, path: &str) -> Option<Faces> {
+    match table {
         Ok(table) => Some([Arc::new(table.from(Side::Front)), Arc::new(table.from(Side::Back))]),
         Err(problem) => {
             shop.fault(path, problem);
