@@ -87,13 +87,14 @@ pub fn particles(written: &written::Scatter, light: &[f64]) -> Option<Deposit> {
     else {
         return None;
     };
-    let sizes = match bins {
+    let sizes: Vec<(f64, f64)> = match bins {
         // Counted, like the levels, on a tenth of a square metre.
         Some(bins) => bins.iter().map(|(diameter, number)| (diameter.0, 10.0 * number)).collect(),
         None => distribution(*level, *slope, [smallest.0, largest.0]),
     };
     let dust = medium::Constant { n: *n, loss: medium::Loss::Extinction(*k) };
-    Some(Deposit::new(&dust, &sizes, light))
+    // Nothing lies on it: no deposit.
+    sizes.iter().any(|(_, number)| *number > 0.0).then(|| Deposit::new(&dust, &sizes, light))
 }
 
 /// The lobe of a model that is one formula; `None` if it scatters nothing.
