@@ -37,7 +37,7 @@
 //! ─────────────────────────────────────────────────────────────
 //!                     surface     tally
 //! ─────────────────────────────────────────────────────────────
-//!          coating   bsdf   packet   source   detector
+//!      coating   bsdf   packet   source   detector   aim
 //! ─────────────────────────────────────────────────────────────
 //!                           medium
 //! ─────────────────────────────────────────────────────────────
@@ -59,6 +59,7 @@
 // Indented blocks in the documentation are formulas, not code.
 #![allow(rustdoc::invalid_rust_codeblocks)]
 
+pub mod aim;
 pub mod bsdf;
 pub mod coating;
 pub mod detector;

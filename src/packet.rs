@@ -26,6 +26,8 @@ pub struct Packet<const V: usize> {
     /// The film between two faces that it is in.
     pub film: Option<Box<Film>>,
     pub rng: Rng,
+    /// Flux below which it is drawn for when it is scattered next, W: it was sent where it may not have met what it was aimed at.
+    pub level: f64,
     pub ancestry: Ancestry,
 }
 

@@ -1,5 +1,6 @@
 //! What light sees: triangles, parts, surfaces, media, sources, detectors. Ids and SI units; strings only as labels.
 
+use crate::aim::Target;
 use crate::detector::Detector;
 use crate::geometry::{Bvh, Hit, Left, Ray};
 use crate::medium::Medium;
@@ -26,6 +27,8 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     pub sources: Vec<Source>,
     pub detectors: Vec<Detector>,
+    /// What surfaces may aim at.
+    pub targets: Vec<Target>,
     /// Scene coordinates are world coordinates minus this, m: the scene is centred so that no digits are lost far from the origin.
     pub shift: DVec3,
     /// True if any surface mirrors or refracts.
@@ -42,6 +45,8 @@ pub struct Part {
     pub kind: PartKind,
     /// Detectors that watch this part.
     pub detectors: Vec<u16>,
+    /// Targets at which its front and its back aim what they scatter.
+    pub aims: [Vec<u16>; 2],
     /// Whether optical contact with glass that touches it is broken by a film of ambient.
     pub air_gap: bool,
 }

@@ -22,6 +22,15 @@ pub struct Settings {
     pub until: Option<Until>,
     /// Rows of the path table, the fullest first.
     pub paths: usize,
+    pub importance: Guidance,
+}
+
+/// Whether the run learns first where scattered light counts. The expectation of every number is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Guidance {
+    Auto,
+    #[default]
+    Off,
 }
 
 /// Russian roulette: a packet whose flux falls below `below` x its source ray's flux survives with probability `survive` and
@@ -54,6 +63,7 @@ impl Default for Settings {
             max_events: 1_000_000,
             until: None,
             paths: 1000,
+            importance: Guidance::default(),
         }
     }
 }

@@ -10,7 +10,7 @@ const LAYERS: [&[&str]; 10] = [
     &["geometry", "optics", "prescription"],
     &["film", "import"],
     &["medium"],
-    &["coating", "bsdf", "packet", "source", "detector"],
+    &["coating", "bsdf", "packet", "source", "detector", "aim"],
     &["surface", "tally"],
     &["scene"],
     &["system", "transport", "report"],

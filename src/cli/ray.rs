@@ -16,6 +16,7 @@ use straylight::system::units::{Angle, Direction, FromText, Position, Wavelength
 use straylight::tally::layout::Cut;
 use straylight::tally::{Layout, Live, Sums};
 use straylight::transport::book::Book;
+use straylight::transport::importance::Importance;
 use straylight::transport::paths::Rows;
 use straylight::transport::walk::Walk;
 use straylight::transport::watch::{Sight, Watch};
@@ -80,8 +81,8 @@ pub fn ray(args: &RayArgs) -> Result<Ending, Error> {
     let log = Log { rows: Vec::new(), more: 0, way: String::new() };
     let mut packet = packet(args, scene, &settings);
     tell(&start(&packet, scene));
-    let mut walk =
-        Walk { scene, settings: &settings, seed: settings.seed, book, watch: log, waiting: Vec::new(), start: 0.0 };
+    let importance = Importance::declared(scene);
+    let mut walk = Walk::new(scene, &settings, &importance, book, log);
     walk.history(&mut packet);
     let sums = walk.book.finish();
     tell(&table(&walk.watch, scene));
@@ -102,6 +103,7 @@ fn packet(args: &RayArgs, scene: &Scene, settings: &Settings) -> Packet<1> {
         left: Left::nothing(),
         film: None,
         rng: Rng::new(settings.seed, 0, 0),
+        level: 0.0,
         ancestry: Ancestry::born(0, 0),
     }
 }

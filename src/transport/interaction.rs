@@ -1,6 +1,7 @@
 //! Light meets a surface: the bill of what is reflected, transmitted, scattered and absorbed, and the branches that go on.
 
 use super::film;
+use super::scatter;
 use super::walk::Walk;
 use super::watch::{Sight, Watch};
 use crate::geometry::{Crossing, Frame, Hit};
@@ -15,24 +16,24 @@ use crate::tally::layout::{Cut, Loss};
 use glam::{DVec2, DVec3};
 
 /// What one arrival comes to, per lane. Stokes vectors are in the frame whose x is s, W.
-struct Bill<const V: usize> {
+pub(super) struct Bill<const V: usize> {
     reflected: [Stokes; V],
     transmitted: [Stokes; V],
     /// Scattered flux, W.
-    scattered: [f64; V],
+    pub(super) scattered: [f64; V],
 }
 
 /// The meeting: geometry and models.
-struct Meeting<'a, const V: usize> {
+pub(super) struct Meeting<'a, const V: usize> {
     crossed: Crossed,
     /// Whether light arrives at the front of the acting face.
-    front: bool,
-    part: u32,
-    surfaces: [&'a Surface; V],
-    shares: [Shares; V],
-    frame: Frame,
+    pub(super) front: bool,
+    pub(super) part: u32,
+    pub(super) surfaces: [&'a Surface; V],
+    pub(super) shares: [Shares; V],
+    pub(super) frame: Frame,
     /// The same for all lanes but for the lay of their surfaces.
-    at: [Incidence; V],
+    pub(super) at: [Incidence; V],
     /// Local direction of the refracted ray, if there is one.
     refracted: Option<DVec3>,
 }
@@ -157,8 +158,8 @@ fn limit<const V: usize, W: Watch>(
     }
 }
 
-/// The three ways on, in the order of the arrays below.
-const WAYS: [Event; 3] = [Event::Reflect, Event::Transmit, Event::Scatter];
+/// The specular ways on, in the order of the arrays below; the third is scatter.
+const WAYS: [Event; 2] = [Event::Reflect, Event::Transmit];
 
 /// Sends the branches off; the last one that lives goes on in `packet`, the others wait.
 fn branch<const V: usize, W: Watch>(
@@ -168,7 +169,11 @@ fn branch<const V: usize, W: Watch>(
     meeting: &Meeting<V>,
     bill: &Bill<V>,
 ) -> bool {
-    let factors = choose(walk, packet, bill);
+    let mut factors = choose(walk, packet, bill);
+    let plan = (factors[2] > 0.0).then(|| scatter::plan(walk, packet, meeting, bill, factors[2]));
+    if plan.as_ref().is_some_and(|plan| plan.branches == 0) {
+        factors[2] = 0.0;
+    }
     let Some(last) = (0..3).rev().find(|&way| factors[way] > 0.0) else { return false };
     for way in (0..last).filter(|&way| factors[way] > 0.0) {
         let mut child = packet.clone();
@@ -179,7 +184,10 @@ fn branch<const V: usize, W: Watch>(
             walk.waiting.push(child);
         }
     }
-    leave(packet, crossing, meeting, bill, WAYS[last], factors[last])
+    match plan.filter(|_| last == 2) {
+        Some(plan) => scatter::scatter(walk, packet, crossing, meeting, bill, &plan),
+        None => leave(packet, crossing, meeting, bill, WAYS[last], factors[last]),
+    }
 }
 
 /// Factor on each way's flux: 0 where it is not followed, 1 where it is followed beside others, 1 / probability where it
@@ -217,7 +225,7 @@ fn choose<const V: usize, W: Watch>(walk: &Walk<V, W>, packet: &mut Packet<V>, b
     factors
 }
 
-/// Turns `packet` into the branch that leaves by `way`; false if a scatter draw went nowhere.
+/// Turns `packet` into the specular branch that leaves by `way`; false if there is none.
 fn leave<const V: usize>(
     packet: &mut Packet<V>,
     crossing: &Crossing,
@@ -227,50 +235,19 @@ fn leave<const V: usize>(
     factor: f64,
 ) -> bool {
     let wi = meeting.at[0].wi;
-    let local = match way {
-        Event::Reflect => Some(refraction::reflect(wi)),
-        Event::Transmit => meeting.refracted,
-        Event::Scatter | Event::Bulk => return scatter(packet, crossing, meeting, bill, factor),
+    let (local, light) = match way {
+        Event::Reflect => (Some(refraction::reflect(wi)), &bill.reflected),
+        _ => (meeting.refracted, &bill.transmitted),
     };
     let Some(local) = local else { return false };
-    let light = if way == Event::Reflect { &bill.reflected } else { &bill.transmitted };
     packet.light = light.map(|light| light * factor);
     packet.transverse = meeting.frame.y;
     depart(packet, crossing, meeting, local, way);
     true
 }
 
-fn scatter<const V: usize>(
-    packet: &mut Packet<V>,
-    crossing: &Crossing,
-    meeting: &Meeting<V>,
-    bill: &Bill<V>,
-    factor: f64,
-) -> bool {
-    let (at, surfaces, shares) = (&meeting.at, &meeting.surfaces, &meeting.shares);
-    // The direction comes from the mixture of all lanes; each lane weighs its own value against the mixture's density.
-    let total: f64 = bill.scattered.iter().sum();
-    let mut rest = if V == 1 { 0.0 } else { packet.rng.uniform() * total };
-    let lane = (0..V).find(|&lane| {
-        rest -= bill.scattered[lane];
-        rest < 0.0
-    });
-    let lane = lane.unwrap_or(V - 1);
-    let Some(wo) = surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng) else { return false };
-    let density: f64 = (0..V).map(|l| bill.scattered[l] / total * surfaces[l].density(&at[l], &shares[l], wo)).sum();
-    for l in 0..V {
-        // `scattered` may have been cut to zero by a limit in this lane only.
-        let alive = (bill.scattered[l] > 0.0) as u8 as f64;
-        let flux = alive * packet.light[l].i * surfaces[l].value(&at[l], &shares[l], wo) / density;
-        packet.light[l] = Stokes::unpolarised(flux * factor);
-    }
-    depart(packet, crossing, meeting, wo, Event::Scatter);
-    packet.transverse = Frame::from_z(packet.ray.direction).x;
-    true
-}
-
 /// Sets off in local direction `local`.
-fn depart<const V: usize>(packet: &mut Packet<V>, crossing: &Crossing, meeting: &Meeting<V>, local: DVec3, way: Event) {
+pub(super) fn depart<const V: usize>(packet: &mut Packet<V>, crossing: &Crossing, meeting: &Meeting<V>, local: DVec3, way: Event) {
     packet.ray.direction = meeting.frame.to_world(local).normalize();
     let passes = local.z < 0.0;
     film::depart(packet, crossing, passes);

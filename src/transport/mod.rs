@@ -3,17 +3,20 @@
 pub mod book;
 mod bulk;
 mod film;
+pub mod importance;
 mod interaction;
 pub mod paths;
+mod scatter;
 pub mod summary;
 pub mod walk;
 pub mod watch;
 
 use crate::math::rng::mix;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::settings::{Guidance, Settings};
 use crate::tally::{Fold, Layout, Live, Sums};
 use book::Book;
+use importance::Importance;
 use paths::{Candidates, Rows};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -57,7 +60,11 @@ pub fn run<const V: usize>(
 ) -> Counts<V> {
     let batch_rays = settings.batch_rays();
     let quotas = quotas(scene, batch_rays);
-    let rows = pilot::<V>(scene, settings, &quotas, batch_rays, stop);
+    let importance = match settings.importance {
+        Guidance::Auto => importance::learn(scene, settings, &quotas, batch_rays, stop),
+        Guidance::Off => Importance::declared(scene),
+    };
+    let rows = pilot::<V>(scene, settings, &importance, &quotas, batch_rays, stop);
     let layout = scene.layout(rows.rows.len());
     let pool = Mutex::new(Vec::new());
     let mut fold = Fold::default();
@@ -72,7 +79,7 @@ pub fn run<const V: usize>(
                 .with_max_len(1)
                 .map(|batch| {
                     (!stop.load(Ordering::Relaxed))
-                        .then(|| one_batch(scene, settings, &layout, &rows, &quotas, &pool, batch))
+                        .then(|| one_batch(scene, settings, &importance, &layout, &rows, &quotas, &pool, batch))
                 })
                 .collect();
             for finished in chunk {
@@ -116,9 +123,11 @@ fn precise_enough<const V: usize>(settings: &Settings, layout: &Layout, sums: &S
     })
 }
 
+#[allow(clippy::too_many_arguments)]
 fn one_batch<const V: usize>(
     scene: &Scene,
     settings: &Settings,
+    importance: &Importance,
     layout: &Layout,
     rows: &Rows,
     quotas: &[Quota],
@@ -128,8 +137,7 @@ fn one_batch<const V: usize>(
     let idle = pool.lock().ok().and_then(|mut pool| pool.pop());
     let live = idle.unwrap_or_else(|| Live::new(layout.len()));
     let book = Book::new(layout, live, Some(rows));
-    let mut walk =
-        Walk { scene, settings, seed: settings.seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
+    let mut walk = Walk::new(scene, settings, importance, book, Unwatched);
     walk.batch(batch, quotas);
     let sums = walk.book.finish();
     let segments = walk.book.segments;
@@ -150,6 +158,7 @@ const ENOUGH: f64 = 256.0;
 fn pilot<const V: usize>(
     scene: &Scene,
     settings: &Settings,
+    importance: &Importance,
     quotas: &[Quota],
     batch_rays: u64,
     stop: &AtomicBool,
@@ -161,7 +170,8 @@ fn pilot<const V: usize>(
     let seed = mix(settings.seed ^ 0x7069_6c6f_7421);
     let trace = |batch: u64| {
         let book = Book::new(&layout, Live::<V>::new(layout.len()), None);
-        let mut walk = Walk { scene, settings, seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
+        let mut walk = Walk::new(scene, settings, importance, book, Unwatched);
+        walk.seed = seed;
         if !stop.load(Ordering::Relaxed) {
             walk.batch(batch, quotas);
         }

@@ -3,6 +3,7 @@
 use super::book::Book;
 use super::bulk;
 use super::film;
+use super::importance::Importance;
 use super::interaction::interact;
 use super::watch::Watch;
 use crate::detector::{Arrival, Place};
@@ -13,7 +14,7 @@ use crate::medium::absorption;
 use crate::packet::{Ancestry, Packet, Solids};
 use crate::scene::{PartKind, Scene};
 use crate::settings::Settings;
-use crate::source::Birth;
+use crate::source::{Birth, Source};
 use crate::tally::layout::{Cut, Loss};
 use glam::DVec3;
 
@@ -21,6 +22,7 @@ use glam::DVec3;
 pub struct Walk<'a, const V: usize, W: Watch> {
     pub scene: &'a Scene,
     pub settings: &'a Settings,
+    pub importance: &'a Importance,
     /// Key of all random numbers.
     pub seed: u64,
     pub book: Book<'a, V>,
@@ -69,7 +71,18 @@ enum End {
     Escaped,
 }
 
-impl<const V: usize, W: Watch> Walk<'_, V, W> {
+impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
+    /// A walk with the seed of the settings.
+    pub fn new(
+        scene: &'a Scene,
+        settings: &'a Settings,
+        importance: &'a Importance,
+        book: Book<'a, V>,
+        watch: W,
+    ) -> Walk<'a, V, W> {
+        Walk { scene, settings, importance, seed: settings.seed, book, watch, waiting: Vec::new(), start: 0.0 }
+    }
+
     /// Traces every source ray of batch `batch`.
     pub fn batch(&mut self, batch: u64, quotas: &[Quota]) {
         let size = quotas.last().map_or(0, |q| q.first + q.count);
@@ -77,28 +90,36 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
         for (source, quota) in quotas.iter().enumerate() {
             for index in quota.first..quota.first + quota.count {
                 let mut rng = Rng::new(self.seed, batch * size + index, 0);
-                let flux = self.scene.sources[source].flux / quota.count as f64;
-                let birth = self.scene.sources[source].emit(&mut |d| block.coordinate(index as u32, d, rng.uniform()));
-                let mut packet = self.born(source, batch * size + index, birth, flux, rng);
+                let shining = &self.scene.sources[source];
+                let flux = shining.flux / quota.count as f64;
+                let birth = shining.emit(&mut |d| block.coordinate(index as u32, d, rng.uniform()));
+                let mut packet = self.born(shining, (source as u16, batch * size + index), birth, flux, rng);
                 self.history(&mut packet);
             }
         }
     }
 
-    /// A packet at its source.
-    pub fn born(&mut self, source: usize, history: u64, birth: Birth, flux: f64, rng: Rng) -> Packet<V> {
-        let (left, solids) = start_of(self.scene, source, &birth);
-        let stokes = self.scene.sources[source].polarization.stokes;
+    /// A packet at its source, which is called by `(source, history)`.
+    pub fn born(
+        &self,
+        shining: &Source,
+        (source, history): (u16, u64),
+        birth: Birth,
+        flux: f64,
+        rng: Rng,
+    ) -> Packet<V> {
+        let (left, solids) = start_of(self.scene, shining, &birth);
         Packet {
             ray: birth.ray,
-            light: [stokes * flux; V],
+            light: [shining.polarization.stokes * flux; V],
             transverse: birth.transverse,
             wavelength: birth.wavelength,
             solids,
             left,
             film: None,
             rng,
-            ancestry: Ancestry::born(source as u16, history),
+            level: 0.0,
+            ancestry: Ancestry::born(source, history),
         }
     }
 
@@ -254,11 +275,11 @@ impl<const V: usize, W: Watch> Walk<'_, V, W> {
 }
 
 /// What a newborn ray leaves and the solids it starts in.
-fn start_of(scene: &Scene, source: usize, birth: &Birth) -> (Left, Solids) {
+fn start_of(scene: &Scene, shining: &Source, birth: &Birth) -> (Left, Solids) {
     let left = birth
         .from
         .map_or_else(Left::nothing, |(triangle, front)| Left::one(triangle, scene.geometry.object(triangle), front));
-    if scene.sources[source].outside {
+    if shining.outside {
         return (left, Solids::default());
     }
     let mut solids = scene.solids_at(birth.ray.origin);

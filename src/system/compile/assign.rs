@@ -250,7 +250,7 @@ fn part(
     };
     let surface = vec![[side(true), side(false)]];
     let air_gap = last(shop, entries, |s| s.gap) == Some(written::Gap::Air);
-    Part { label, surface, kind, detectors: Vec::new(), air_gap }
+    Part { label, surface, kind, detectors: Vec::new(), aims: [Vec::new(), Vec::new()], air_gap }
 }
 
 /// What one side of a part is: its entries over each other, or the default. A side that entries leave out because they

@@ -17,13 +17,13 @@ mod scatter;
 mod scatterer;
 pub mod understanding;
 
-use super::document::Document;
+use super::document::{Document, Importance};
 use super::gltf::Node;
 use crate::bsdf::contamination::Deposit;
 use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
-use crate::settings::{Roulette, Settings, Until};
+use crate::settings::{Guidance, Roulette, Settings, Until};
 use assembly::Assembly;
 pub use coated::{Coated, coated};
 use glam::DVec3;
@@ -171,6 +171,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         solids: assigned.solids,
         sources,
         detectors,
+        targets: Vec::new(),
         shift: assembly.shift,
         has_optics,
     };
@@ -208,6 +209,10 @@ fn settings(document: &Document) -> Settings {
             Some(Until { detector, relative: until.relative })
         }),
         paths: run.paths as usize,
+        importance: match run.importance {
+            Importance::Auto => Guidance::Auto,
+            Importance::Off => Guidance::Off,
+        },
     }
 }
 

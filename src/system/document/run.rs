@@ -29,6 +29,19 @@ pub struct Run {
     pub until: Option<Until>,
     /// Rows of the path table; the rest is one exact row.
     pub paths: u32,
+    /// Whether the run learns first where scattered light counts.
+    pub importance: Importance,
+}
+
+/// Whether the run learns first where scattered light counts. Every number means the same; the errors differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Importance {
+    /// It learns, draws more of what counts and less of what does not.
+    Auto,
+    /// Light is drawn as it scatters, but for the targets of surfaces.
+    #[default]
+    Off,
 }
 
 impl Default for Run {
@@ -45,6 +58,7 @@ impl Default for Run {
             max_events: None,
             until: None,
             paths: 1000,
+            importance: Importance::default(),
         }
     }
 }

@@ -1,0 +1,161 @@
+//! Importance: where scattered light counts. It decides what is drawn and how often, never what it weighs.
+//!
+//! At a scatter event the packet is continued by n branches, n with mean k, each with a direction from the one mixture
+//!
+//!     p = a_0 p_lobes + sum_j a_j p_target,j + a_g p_learned,      weight f |cos| / (k p),
+//!
+//! so that every direction which any of them can draw is weighed by all of them (balance heuristic; Veach, Guibas, SIGGRAPH
+//! 1995). k is the worth of the scattered light over the worth of a whole branch (weight windows; Haghighat, Wagner,
+//! Progress in Nuclear Energy 42, 2003): light is divided where it counts and drawn for where it does not.
+
+pub mod directions;
+mod learn;
+pub mod patches;
+pub mod scout;
+
+use crate::aim::{Target, View};
+use crate::math::Rng;
+use crate::scene::Scene;
+use arrayvec::ArrayVec;
+use directions::Directions;
+use glam::DVec3;
+pub use learn::learn;
+use patches::{MOST_TARGETS, Patches};
+
+/// Shares of the draws that lobes keep and that are aimed, where lobes are broad and where they are narrow.
+const BROAD: [f64; 2] = [0.25, 0.75];
+const NARROW: [f64; 2] = [0.5, 0.5];
+/// Wish for a target that the system declares, beside all that was found, which is 1.
+const DECLARED: f64 = 0.3;
+/// Least mean number of branches where no scout has been.
+const UNSEEN: f64 = 0.1;
+/// Most branches of one scatter event.
+const MOST_BRANCHES: f64 = 16.0;
+/// Targets that one mixture can hold: those of the system and those of the map.
+const MOST_VIEWS: usize = 2 * MOST_TARGETS;
+
+/// What is known before the run.
+#[derive(Debug, Default)]
+pub struct Importance {
+    /// Those of the system, then those that were found.
+    pub targets: Vec<Target>,
+    pub map: Option<Map>,
+}
+
+/// The learned map.
+#[derive(Debug)]
+pub struct Map {
+    pub patches: Patches,
+    /// Worth of a whole branch.
+    pub branch: f64,
+}
+
+/// A packet about to be scattered.
+pub struct Occasion {
+    pub part: u32,
+    pub front: bool,
+    /// Scene coordinates, m.
+    pub point: DVec3,
+    /// Scattered flux, W, and that with which its source ray began.
+    pub flux: f64,
+    pub start: f64,
+    /// Flux (W) below which it is drawn for, if it was aimed and there is no map.
+    pub level: f64,
+    /// True if the surface scatters to one side only and broadly.
+    pub broad: bool,
+    pub opaque: bool,
+}
+
+/// How a scattered packet goes on.
+pub struct Advice<'a> {
+    /// Mean number of branches.
+    pub branches: f64,
+    /// Shares of the draws.
+    pub lobes: f64,
+    views: ArrayVec<(f64, View), MOST_VIEWS>,
+    learned: Option<(f64, &'a Directions)>,
+}
+
+impl Advice<'_> {
+    /// One branch from the lobes.
+    const PLAIN: Advice<'static> = Advice { branches: 1.0, lobes: 1.0, views: ArrayVec::new_const(), learned: None };
+
+    /// True if nothing but the lobes of the surface is to be drawn from, once.
+    pub fn is_plain(&self) -> bool {
+        self.lobes == 1.0 && self.branches == 1.0
+    }
+
+    /// A unit direction from what `turn`, in lobes..1, falls to.
+    pub fn aim(&self, turn: f64, rng: &mut Rng) -> Option<DVec3> {
+        let mut rest = turn - self.lobes;
+        for (share, view) in &self.views {
+            rest -= share;
+            if rest < 0.0 {
+                return Some(view.draw(rng));
+            }
+        }
+        match self.learned {
+            Some((_, directions)) => Some(directions.draw(rng.pair())),
+            None => self.views.last().map(|(_, view)| view.draw(rng)),
+        }
+    }
+
+    /// Density of the mixture at a unit direction where that of the lobes is `lobes`, 1/sr.
+    pub fn density(&self, direction: DVec3, lobes: f64) -> f64 {
+        let views: f64 = self.views.iter().map(|(share, view)| share * view.density(direction)).sum();
+        let learned = self.learned.map_or(0.0, |(share, directions)| share * directions.density(direction));
+        self.lobes * lobes + views + learned
+    }
+}
+
+impl Importance {
+    /// Only what the system says.
+    pub fn declared(scene: &Scene) -> Importance {
+        Importance { targets: scene.targets.clone(), map: None }
+    }
+
+    /// How to go on.
+    pub fn advise(&self, scene: &Scene, occasion: &Occasion) -> Advice<'_> {
+        let declared = &scene.parts[occasion.part as usize].aims[!occasion.front as usize];
+        let whole = (occasion.flux / occasion.start).min(1.0);
+        let Some(map) = &self.map else {
+            if declared.is_empty() {
+                return Advice::PLAIN;
+            }
+            let advice = self.mixed(occasion.point, [0.5, 0.5], declared.iter().map(|&target| (1.0, target)), None);
+            let both = if advice.lobes < 1.0 { 2.0 } else { 1.0 };
+            return Advice { branches: both * (occasion.flux / occasion.level).min(1.0), ..advice };
+        };
+        let patch = map.patches.at(occasion.part, occasion.front, occasion.point).filter(|_| occasion.opaque);
+        let worth = patch.map_or(0.0, |patch| occasion.flux * patch.worth / map.branch);
+        let branches = match (occasion.opaque, occasion.broad) {
+            // What no scout has seen may still count.
+            (true, true) => worth.clamp(whole.max(if patch.is_some() { 0.0 } else { UNSEEN }), MOST_BRANCHES),
+            (true, false) => 1.0 + whole,
+            (false, _) => 1.0,
+        };
+        let shares = if occasion.broad { BROAD } else { NARROW };
+        let found = patch.into_iter().flat_map(|patch| patch.targets.iter().map(|&(target, share)| (share, target)));
+        let wishes = declared.iter().map(|&target| (DECLARED, target)).chain(found);
+        let learned = patch.and_then(|patch| patch.rest.as_ref()).map(|(share, directions)| (*share, directions));
+        Advice { branches, ..self.mixed(occasion.point, shares, wishes, learned) }
+    }
+
+    /// A mixture of lobes, the targets that are in sight, and what was learned: `[lobes, others]` share the draws.
+    fn mixed<'a>(
+        &'a self,
+        point: DVec3,
+        [lobes, others]: [f64; 2],
+        wishes: impl Iterator<Item = (f64, u16)>,
+        learned: Option<(f64, &'a Directions)>,
+    ) -> Advice<'a> {
+        let seen = |(wish, target): (f64, u16)| Some((wish, self.targets[target as usize].seen(point)?));
+        let mut views: ArrayVec<(f64, View), MOST_VIEWS> = wishes.filter_map(seen).take(MOST_VIEWS).collect();
+        let sum = views.iter().map(|(wish, _)| wish).sum::<f64>() + learned.map_or(0.0, |(wish, _)| wish);
+        if sum <= 0.0 {
+            return Advice::PLAIN;
+        }
+        views.iter_mut().for_each(|(share, _)| *share *= others / sum);
+        Advice { branches: 1.0, lobes, views, learned: learned.map(|(wish, directions)| (others * wish / sum, directions)) }
+    }
+}
