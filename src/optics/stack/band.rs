@@ -223,14 +223,10 @@ impl Band {
             for (i, down) in down.into_iter().enumerate() {
                 let nodes: &[Half; NODES] = half[first(i)..].first_chunk().unwrap_or(&[[0.0; 8]; NODES]);
                 let mut along = [0.0; 8];
-                for j in 0..NODES {
-                    for k in 0..8 {
-                        along[k] += across[j] * nodes[j][k];
-                    }
+                for (node, across) in nodes.iter().zip(across) {
+                    along.iter_mut().zip(node).for_each(|(along, entry)| *along += across * entry);
                 }
-                for k in 0..8 {
-                    sum[k] += down * along[k];
-                }
+                sum.iter_mut().zip(along).for_each(|(sum, along)| *sum += down * along);
             }
             sum
         };

@@ -141,7 +141,8 @@ fn a_table_over_a_band_is_the_stack() {
     let lossy = |i: i32, w: f64| {
         if i == 3 { film(glass(0.2, w), 3.1, 2e-8) } else { film(glass(1.5, w), 1e-3 * f64::from(i), 2e-8) }
     };
-    let stacks: [(i32, &dyn Fn(i32, f64) -> Layer); 4] = [(40, &clear), (12, &tabled), (5, &lossy), (1, &clear)];
+    type Recipe<'a> = &'a dyn Fn(i32, f64) -> Layer;
+    let stacks: [(i32, Recipe); 4] = [(40, &clear), (12, &tabled), (5, &lossy), (1, &clear)];
     for (count, layer) in stacks {
         let layers = |wavelength: f64| (0..count).map(|i| layer(i, wavelength)).collect::<Vec<_>>();
         let seen = Seen { layers: &layers, highest: &|_| 1.62, beyond: &|_| None };
@@ -164,6 +165,5 @@ fn a_table_over_a_band_is_the_stack() {
         }
         let least = if count == 12 { 3000 } else { 3750 };
         assert!(known > least && most < 1e-6, "{count} layers: {known} of 4000 known, off by {most:e}");
-        println!("{count} layers: {known} of 4000 known, off by {most:e}");
     }
 }
