@@ -1,5 +1,6 @@
 //! Transport segments per second on the shipped systems, and closest-hit queries per second on the very same flights: what a
-//! segment costs beyond its query is the physics. One thread, so that the two compare.
+//! segment costs beyond its query is the physics. One thread, so that the two compare. And source rays per second of one coated lens
+//! in light of every kind of spectrum: a band should cost no more than a line.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
@@ -73,6 +74,73 @@ fn system(group: &mut BenchmarkGroup<WallTime>, name: &str, rays: u64) {
     });
 }
 
+/// The kinds of spectra.
+const SPECTRA: [(&str, &str); 5] = [
+    ("line", "Line(\"550 nm\")"),
+    ("lines", "Lines([(\"480 nm\", 1), (\"550 nm\", 2), (\"640 nm\", 1)])"),
+    ("band", "Band(from: \"450 nm\", to: \"650 nm\")"),
+    ("table", "Table(wavelength: [\"450 nm\", \"500 nm\", \"600 nm\", \"650 nm\"], weight: [0.2, 1, 1.5, 0.3])"),
+    ("black body", "BlackBody(temperature: \"5778 K\", from: \"450 nm\", to: \"650 nm\")"),
+];
+
+/// Three lenses of catalogue glasses under forty layers each, in a tube of measured scatter. The layers are nearly those of the
+/// glass, so that as much light takes each way in every spectrum.
+fn coated(spectrum: &str, rays: u64) -> Compiled {
+    let thickness = |i: usize| 30 + 37 * i % 80;
+    let layers: Vec<String> =
+        (0..40).map(|i| format!("(\"{}\", \"{} nm\")", ["H", "L"][i % 2], thickness(i))).collect();
+    let wall = Path::new(env!("CARGO_MANIFEST_DIR")).join("systems/triplet/black-anodize-plausible.anisotropicbsdf");
+    let text = format!(
+        "System(
+            ambient: \"air\",
+            media: {{ \"air\": Air(), \"crown\": Glass(\"N-SK16\"), \"flint\": Glass(\"N-F2\"), \"L\": Glass(\"N-BK7\"),
+                \"H\": Sellmeier(b: [1.5, 0.1], c: [\"0.01 um2\", \"0.03 um2\"]) }},
+            coatings: {{ \"films\": Stack(layers: [{}]) }},
+            scatter: {{ \"wall\": Table(file: {wall:?}) }},
+            elements: {{
+                \"L1\": (body: Lens(surfaces: [(form: Sphere(radius: \"60 mm\")), (form: Sphere(radius: \"-80 mm\"))],
+                    thickness: [\"6 mm\"], media: [\"crown\"], diameter: \"24 mm\")),
+                \"L2\": (body: Lens(surfaces: [(form: Sphere(radius: \"-50 mm\")), (form: Sphere(radius: \"70 mm\"))],
+                    thickness: [\"2 mm\"], media: [\"flint\"], diameter: \"24 mm\"), at: \"(0, 0, 14) mm\"),
+                \"L3\": (body: Lens(surfaces: [(form: Sphere(radius: \"90 mm\")), (form: Sphere(radius: \"-50 mm\"))],
+                    thickness: [\"5 mm\"], media: [\"crown\"], diameter: \"24 mm\"), at: \"(0, 0, 22) mm\"),
+                \"tube\": (body: Tube(inner: \"25 mm\", outer: \"28 mm\", length: \"70 mm\"), at: \"(0, 0, -5) mm\"),
+                \"image\": (body: Aperture(diameter: \"0 mm\", outer: \"24.9 mm\"), at: \"(0, 0, 65) mm\"),
+            }},
+            default: (specular: Absorb, scatter: \"wall\"),
+            surfaces: [
+                (on: Tag(\"L?.front\"), coating: \"films\"), (on: Tag(\"L?.back\"), coating: \"films\"),
+                (on: Node(\"image\"), specular: Absorb),
+            ],
+            sources: {{ \"sun\": (flux: \"1 W\", extent: Disk(radius: \"11 mm\"), at: \"(0, 1.5, -10) mm\",
+                angular: Collimated(direction: \"(0, 0.1, 1)\"), spectrum: {spectrum}) }},
+            detectors: {{ \"image\": (on: Node(\"image\"), quantity: Irradiance, pixels: (64, 64)) }},
+            run: (rays: {rays}, paths: 0),
+        )",
+        layers.join(", ")
+    );
+    let folder = tempfile::tempdir().expect("a folder for the system");
+    let path = folder.path().join("system.ron");
+    std::fs::write(&path, text).expect("written");
+    let document = Document::read(&path).unwrap_or_else(|e| panic!("{:#?}", e.problems()));
+    compile(&document).unwrap_or_else(|e| panic!("{:#?}", e.problems()))
+}
+
+fn spectra(criterion: &mut Criterion) {
+    const RAYS: u64 = 4096;
+    let mut group = criterion.benchmark_group("spectra");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    let stop = AtomicBool::new(false);
+    for (name, spectrum) in SPECTRA {
+        let Compiled { scene, settings, .. } = coated(spectrum, RAYS);
+        let trace = || pool.install(|| run::<1>(&scene, &settings, &stop, &|_| ()).segments);
+        println!("{name}: {:.2} flights per ray", trace() as f64 / RAYS as f64);
+        group.throughput(Throughput::Elements(RAYS)).sample_size(10);
+        group.bench_function(name, |bench| bench.iter(|| black_box(trace())));
+    }
+    group.finish();
+}
+
 fn transport(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("transport");
     for (name, rays) in SYSTEMS {
@@ -81,5 +149,5 @@ fn transport(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, transport);
+criterion_group!(benches, transport, spectra);
 criterion_main!(benches);

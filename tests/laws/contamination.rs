@@ -5,6 +5,7 @@ use glam::DVec3;
 use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 use straylight::bsdf::contamination::{Deposit, cumulated, distribution};
 use straylight::coating::{Bare, Coating, Ideal, Mirror};
@@ -12,6 +13,9 @@ use straylight::math::Rng;
 use straylight::medium::{Constant, Loss};
 use straylight::optics::Incidence;
 use straylight::surface::{Order, Scattering, Surface};
+use straylight::system::compile::compile;
+use straylight::system::document::Document;
+use straylight::transport::{self, summary};
 
 const LINE: f64 = 550e-9;
 
@@ -176,4 +180,41 @@ fn the_share_that_goes_on_is_an_integral() {
         }
         assert!((sum / shares.scattered - 1.0).abs() < 0.01, "{angle}: {sum} {}", shares.scattered);
     }
+}
+
+/// Watts that a mirror in the sky's middle sends back, of one that arrives, and what is booked as scattered.
+fn reflected(scatter: &str) -> (f64, f64) {
+    let folder = tempfile::tempdir().expect("a folder for the system");
+    let path = folder.path().join("system.ron");
+    let text = format!(
+        "System(
+            elements: {{ \"mirror\": (body: Mirror(form: Plane, diameter: \"20 mm\")) }},
+            scatter: {{ \"dust\": {scatter} }},
+            surfaces: [(on: Tag(\"*front\"), specular: Mirror(reflectance: 0.9), scatter: \"dust\")],
+            sources: {{ \"beam\": (flux: \"1 W\", extent: Point, at: \"(0, 0, -10) mm\",
+                angular: Collimated(direction: \"(0, 0, 1)\"), spectrum: Line(\"550 nm\")) }},
+            detectors: {{ \"sky\": (on: FarField(axis: \"(0, 0, -1)\"), quantity: Intensity) }},
+            run: (rays: 64),
+        )"
+    );
+    std::fs::write(&path, text).expect("written");
+    let document = Document::read(&path).unwrap_or_else(|e| panic!("{:#?}", e.problems()));
+    let compiled = compile(&document).unwrap_or_else(|e| panic!("{:#?}", e.problems()));
+    let counts = transport::run::<1>(&compiled.scene, &compiled.settings, &AtomicBool::new(false), &|_| ());
+    let results = summary::results(&compiled.scene, &compiled.settings, &counts, 0, compiled.inputs, Vec::new());
+    assert!(results.trusted, "{:?}", results.warnings);
+    let sky = &results.detectors["sky"];
+    let scattered = sky.classes.iter().filter(|(class, _)| class.starts_with("scatter"));
+    (sky.flux_w.mean, scattered.map(|(_, flux)| flux.mean).sum())
+}
+
+#[test]
+fn a_surface_on_which_no_particle_lies_is_clean() {
+    for nothing in ["Contamination(level: 1, bins: [(\"5 um\", 0)])", "Contamination(level: 1, smallest: \"2 um\")"] {
+        let (all, scattered) = reflected(nothing);
+        // Level 1 has eight particles of 2 um or more on a square metre: some 1e-9 of the light.
+        assert!((all - 0.9).abs() < 1e-8 && scattered < 1e-8, "{nothing}: {all} {scattered}");
+    }
+    let (_, scattered) = reflected("Contamination(level: 1, bins: [(\"5 um\", 1e5)])");
+    assert!(scattered > 1e-5, "{scattered}");
 }

@@ -3,7 +3,7 @@
 use crate::support::case::number;
 use crate::support::shapes::*;
 use crate::support::trial::{bin, scaled};
-use crate::support::{Model, Trial};
+use crate::support::{Case, Model, Trial, run};
 use glam::DVec3;
 use serde_json::Value;
 use straylight::tally::results::{Estimate, Results};
@@ -125,27 +125,77 @@ fn vol_06(trial: &mut Trial) {
     }
 }
 
-/// A true sphere of glass in a closed lamp: in the clear its trapped light is out of reach; any scatter lets all of it in.
+/// A true sphere of glass in a closed lamp that sends 1 W, and the flux that meets the sphere, W. `scattering`: 1/mm.
+fn ball(radius: f64, n: f64, scattering: f64) -> (String, Model, f64) {
+    let shell = sphere(1.3 * radius, 3, Equal::Corners);
+    let incident = 4.0 * std::f64::consts::PI * radius * radius / area(&shell);
+    let text = format!(
+        "elements: {{\"body\": (body: Lens(surfaces: [(form: Sphere(radius: \"{radius:?} mm\")), (form: Sphere(radius: \"-{radius:?} mm\"))],
+            thickness: [\"{:?} mm\"], media: [\"milk\"], diameter: \"{:?} mm\"), at: \"(0, 0, {:?}) mm\")}},
+        {} default: (specular: Absorb),
+        sources: {{\"lamp\": (flux: \"1 W\", extent: Node(name: \"lamp\", side: Back), angular: Lambertian,
+            spectrum: Line(\"550 nm\"))}}, {DRAWN}",
+        2.0 * radius,
+        2.0 * radius,
+        -radius,
+        turbid(n, [PROBE, scattering], 0.0)
+    );
+    (text, Model::new().add("lamp", shell), incident)
+}
+
+/// In the clear the trapped light of the sphere is out of reach; any scatter lets all of it in.
 fn vol_08(trial: &mut Trial) {
     let (radius, n) = (trial.case.given("/R"), trial.case.given("/n"));
     let value: Value = trial.case.values().remove(0);
-    let shell = sphere(1.3 * radius, 3, Equal::Corners);
-    let incident = 4.0 * std::f64::consts::PI * radius * radius / area(&shell);
-    let model = Model::new().add("lamp", shell);
     for (name, scattering) in [("mean_path", 0.0), ("with_any_isotropic_scatter", 0.2)] {
-        let text = format!(
-            "elements: {{\"body\": (body: Lens(surfaces: [(form: Sphere(radius: \"{radius:?} mm\")), (form: Sphere(radius: \"-{radius:?} mm\"))],
-                thickness: [\"{:?} mm\"], media: [\"milk\"], diameter: \"{:?} mm\"), at: \"(0, 0, {:?}) mm\")}},
-            {} default: (specular: Absorb),
-            sources: {{\"lamp\": (flux: \"1 W\", extent: Node(name: \"lamp\", side: Back), angular: Lambertian,
-                spectrum: Line(\"550 nm\"))}}, {DRAWN}",
-            2.0 * radius,
-            2.0 * radius,
-            -radius,
-            turbid(n, [PROBE, scattering], 0.0)
-        );
+        let (text, model, incident) = ball(radius, n, scattering);
         let results = trial.run(&text, &model, 60_000);
         // The probe takes 1e-6 per mm from all that is on its way.
         trial.check(name, mean_path(&results, incident), number(&value, name), 2e-4 * number(&value, name));
+    }
+}
+
+/// Within four of its errors, each below a thousandth of itself.
+#[track_caller]
+fn to_a_thousandth(what: &str, found: Estimate, reference: f64, sys: f64) {
+    let Estimate { mean, error } = found;
+    println!("{what}: {mean:.6} +- {error:.6}, reference {reference:.6}: {:+.2} sigma", (mean - reference) / error);
+    assert!(error < 1e-3 * reference, "{what}: {mean} +- {error}");
+    assert!((mean - reference).abs() <= 4.0 * error + sys, "{what}: {mean} +- {error}, reference {reference}");
+}
+
+#[test]
+#[ignore = "full size; cargo test --release --test verification -- --ignored"]
+fn the_mean_path_of_diffuse_light_is_n_squared_four_v_over_s_to_a_thousandth() {
+    let case = Case::load("VOL-08");
+    let (radius, n) = (case.given("/R"), case.given("/n"));
+    // 4 V / S of a sphere is 4 R / 3.
+    let wanted = n * n * 4.0 * radius / 3.0;
+    assert!((wanted - number(&case.values()[0], "with_any_isotropic_scatter")).abs() < 1e-12);
+    for (seed, scattering) in [0.05, 0.2, 1.0].into_iter().enumerate() {
+        let (text, model, incident) = ball(radius, n, scattering);
+        let found = mean_path(&run(&text, &model, 6_000_000, 100 + seed as u64), incident);
+        // The probe takes 1e-6 per mm from all that is on its way: of paths of the mean square length twice the mean squared.
+        to_a_thousandth(&format!("{scattering} /mm"), found, wanted, 2e-4 * wanted);
+    }
+}
+
+#[test]
+#[ignore = "full size; cargo test --release --test verification -- --ignored"]
+fn published_slabs_are_met_to_a_thousandth() {
+    for (id, g) in [("VOL-01", 0.75), ("VOL-02", 0.0)] {
+        let case = Case::load(id);
+        let [absorption, scattering, n, thickness] =
+            ["/mu_a", "/mu_s", "/n_medium", "/thickness"].map(|pointer| case.given(pointer));
+        let medium = turbid(n, [0.1 * absorption, 0.1 * scattering], g);
+        let text = format!("{medium} {} {SKY} {DRAWN}", pencil(0.0));
+        let results = run(&text, &plate(10.0 * thickness), 12_000_000, 7);
+        let value = &case.values()[0];
+        // Five digits of the adding-doubling reference.
+        to_a_thousandth(&format!("{id} R"), bin(&results, "sky", 1), number(value, "R_total"), 2e-5);
+        let through = number(value, "T_total");
+        if through > 0.0 {
+            to_a_thousandth(&format!("{id} T"), bin(&results, "sky", 0), through, 2e-5);
+        }
     }
 }

@@ -22,6 +22,7 @@
 //!
 //! Source: Macleod, Thin-Film Optical Filters, 4th ed. (2010), sec. 2.7; Born & Wolf, Principles of Optics, 7th ed., sec. 1.6.
 
+mod band;
 mod table;
 
 use super::refraction::{normal_component_squared, root};
@@ -29,6 +30,7 @@ use super::{Amplitudes, Split};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
+pub use band::{Band, End, Seen};
 pub use table::Table;
 
 /// Fields beyond this size are scaled down; 1e300 is the largest double.

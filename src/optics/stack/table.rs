@@ -24,7 +24,8 @@ const FAINTEST: f64 = 1e-100;
 /// Four complex entries for s, four for p.
 const ENTRIES: usize = 16;
 
-type Entries = [f64; ENTRIES];
+/// Real and imaginary parts of the entries, row by row, of s and then of p.
+pub type Matrix = [f64; ENTRIES];
 
 /// The matrix of a stack over the angle, at one wavelength.
 #[derive(Clone, Debug)]
@@ -32,7 +33,7 @@ pub struct Table {
     /// Largest x.
     reach: f64,
     /// Chebyshev coefficients of each piece.
-    pieces: Vec<[Entries; TERMS]>,
+    pieces: Vec<[Matrix; TERMS]>,
 }
 
 impl Table {
@@ -73,7 +74,7 @@ impl Table {
 }
 
 /// The series at t, -1..1.
-fn sum(piece: &[Entries; TERMS], t: f64) -> Entries {
+fn sum(piece: &[Matrix; TERMS], t: f64) -> Matrix {
     let mut polynomial = [1.0, t];
     let mut sum = piece[0];
     for terms in &piece[1..] {
@@ -86,7 +87,7 @@ fn sum(piece: &[Entries; TERMS], t: f64) -> Entries {
 }
 
 /// The coefficients between `from` and `to`: `Some(None)` if they are not good enough, `None` if there is no table at all.
-fn piece(at: &impl Fn(f64) -> Option<Entries>, from: f64, to: f64) -> Option<Option<[Entries; TERMS]>> {
+fn piece(at: &impl Fn(f64) -> Option<Matrix>, from: f64, to: f64) -> Option<Option<[Matrix; TERMS]>> {
     let x = |t: f64| 0.5 * (from + to) + 0.5 * (to - from) * t;
     let node = |j: usize| (PI * (j as f64 + 0.5) / TERMS as f64).cos();
     let mut piece = [[0.0; ENTRIES]; TERMS];
@@ -111,7 +112,7 @@ fn piece(at: &impl Fn(f64) -> Option<Entries>, from: f64, to: f64) -> Option<Opt
 }
 
 /// The matrix at one x; `None` if it is too large.
-fn matrix(layers: &[Layer], wavelength: f64, x: f64) -> Option<Entries> {
+pub fn matrix(layers: &[Layer], wavelength: f64, x: f64) -> Option<Matrix> {
     let [one, zero] = [Complex64::ONE, Complex64::ZERO];
     let mut columns = [[one, zero], [zero, one]].map(|column| Fields { s: column, p: column });
     let mut scale = 1.0;

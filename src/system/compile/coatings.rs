@@ -10,6 +10,7 @@ use crate::coating::tabulated::{self, MIRROR, Tabulated};
 use crate::coating::{self, Coating, Side, Stack, zemax};
 use crate::error::Problem;
 use crate::medium::{Medium, agf};
+use crate::optics::stack::End;
 use crate::scene::Filling;
 use crate::source::Source;
 use crate::system::document as written;
@@ -166,15 +167,17 @@ fn stack(shop: &Shop, films: Films, substrate: Option<Arc<dyn Medium>>, media: &
         let indices = media.iter().map(|filling| filling.medium.index(wavelength)).filter(clear);
         indices.map(|index| index.re).fold(1.0, f64::max)
     };
-    let ready = |layers| -> Arc<dyn Coating> {
-        Arc::new(Stack::new(known.clone(), layers, substrate.clone()).tabulated(&lines, highest))
+    let plain = |layers| Stack::new(known.clone(), layers, substrate.clone());
+    let band = media::band(shop.document).and_then(|band| plain(layers.clone()).over(band, highest));
+    let ready = |layers, end| -> Arc<dyn Coating> {
+        Arc::new(plain(layers).tabulated(&lines, highest).looked_up(band.clone(), end))
     };
-    let front = ready(layers.clone());
+    let front = ready(layers.clone(), End::First);
     if substrate.is_some() {
         // Under an opaque substrate there is no light: what arrives from either side meets the layers first.
         return [front.clone(), front];
     }
-    [front, ready(layers.into_iter().rev().collect())]
+    [front, ready(layers.into_iter().rev().collect(), End::Last)]
 }
 
 fn table(shop: &mut Shop, file: Option<&Path>, rows: Option<&[written::Row]>, path: &str) -> Option<Faces> {

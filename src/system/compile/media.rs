@@ -18,10 +18,11 @@ pub fn media(shop: &mut Shop) -> Vec<Filling> {
     let mut media = vec![vacuum];
     let lines = lines(shop.document);
     let light = light(shop.document, BULK_POINTS);
+    let band = band(shop.document);
     for (name, written) in shop.document.system.media.iter() {
         // What cannot be read is noted, and the system refused; until then its place is kept.
         let medium = medium(shop, written, &light, &format!("media[{name:?}]"));
-        let medium = medium.map_or_else(empty, |medium| Arc::new(Remembered::new(medium, &lines)));
+        let medium = medium.map_or_else(empty, |medium| Arc::new(Remembered::new(medium, &lines, band)));
         media.push(Filling { label: name.into(), medium });
     }
     media
@@ -46,26 +47,27 @@ pub fn lines(document: &written::Document) -> Vec<f64> {
 /// Wavelengths of a continuous spectrum at which scatter in media is worked out.
 const BULK_POINTS: u32 = 48;
 
+/// Least and greatest vacuum wavelength (m) of the continuous spectra of the sources, and of lines that are too many.
+pub fn band(document: &written::Document) -> Option<[f64; 2]> {
+    let lines = lines(document);
+    let ends = |spectrum: &written::Spectrum| match spectrum {
+        written::Spectrum::Line(_) => Vec::new(),
+        written::Spectrum::Lines(_) if !lines.is_empty() => Vec::new(),
+        written::Spectrum::Lines(shares) => shares.iter().map(|(wavelength, _)| wavelength.0).collect(),
+        written::Spectrum::Band { from, to } | written::Spectrum::BlackBody { from, to, .. } => vec![from.0, to.0],
+        written::Spectrum::Table { wavelength, .. } => wavelength.iter().map(|wavelength| wavelength.0).collect(),
+    };
+    let ends = document.system.sources.iter().flat_map(|(_, source)| ends(&source.spectrum));
+    ends.map(|end| [end; 2]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
 /// Vacuum wavelengths (m, rising) at which what is costly is worked out: the lines of the sources, and of continuous spectra as many
 /// `points` from the least to the greatest wavelength of all of them.
 pub fn light(document: &written::Document, points: u32) -> Vec<f64> {
-    let lines = lines(document);
-    let band = |spectrum: &written::Spectrum| match spectrum {
-        written::Spectrum::Line(_) => None,
-        written::Spectrum::Lines(shares) if !lines.is_empty() || shares.is_empty() => None,
-        written::Spectrum::Lines(shares) => Some(shares.iter().map(|(wavelength, _)| wavelength.0).collect()),
-        written::Spectrum::Band { from, to } | written::Spectrum::BlackBody { from, to, .. } => {
-            Some(vec![from.0, to.0])
-        }
-        written::Spectrum::Table { wavelength, .. } => Some(wavelength.iter().map(|wavelength| wavelength.0).collect()),
-    };
-    let bands: Vec<f64> =
-        document.system.sources.iter().filter_map(|(_, source)| band(&source.spectrum)).flatten().collect();
-    let from = bands.iter().copied().fold(f64::INFINITY, f64::min);
-    let to = bands.iter().copied().fold(0.0, f64::max);
-    let between = (0..points).map(|i| from + (to - from) * f64::from(i) / f64::from(points - 1));
-    let mut light: Vec<f64> = if bands.is_empty() { Vec::new() } else { between.collect() };
-    light.extend(lines);
+    let mut light = lines(document);
+    if let Some([from, to]) = band(document) {
+        light.extend((0..points).map(|i| from + (to - from) * f64::from(i) / f64::from(points - 1)));
+    }
     light.sort_by(f64::total_cmp);
     light.dedup();
     light
