@@ -1,4 +1,4 @@
-//! What one event costs: every scatter model as the transport loop asks a surface of it - shares, draw, value and density - and Fresnel's
+//! What one event costs: every scatter model as the transport loop asks a surface of it - shares, draw and weight - and Fresnel's
 //! interface, beside one random number. Requirement: tables and ABg below four times Lambertian.
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -10,7 +10,7 @@ use straylight::bsdf::contamination::{Deposit, distribution};
 use straylight::bsdf::reading::{Unmeasured, parse};
 use straylight::bsdf::{
     Abg, Axis, Bsdf, Compensation, CosinePower, Distribution, Facets, Gaussian, Harvey, KCorrelation, Klems,
-    Lambertian, Microfacet, OrenNayar, Polish, PsdTable, Side, Spectral, Tabulated, klems_xml,
+    Lambertian, Microfacet, OrenNayar, Polish, PsdTable, Side, Spectral, Tabulated, Weighed, klems_xml,
 };
 use straylight::coating::{Bare, Coating, Mirror};
 use straylight::math::Rng;
@@ -96,8 +96,11 @@ fn incidences(n: Complex64) -> Vec<Incidence> {
 /// Weight of one event.
 fn weight(surface: &Surface, at: &Incidence, rng: &mut Rng) -> f64 {
     let shares = surface.shares(at);
-    let weigh = |wo| surface.value(at, &shares, wo) / surface.density(at, &shares, wo);
-    surface.draw(at, &shares, rng).map_or(0.0, weigh)
+    let weight = |wo| {
+        let Weighed { value, density } = surface.weigh(at, &shares, wo);
+        value / density
+    };
+    surface.draw(at, &shares, rng).map_or(0.0, weight)
 }
 
 fn events(criterion: &mut Criterion) {
@@ -106,9 +109,7 @@ fn events(criterion: &mut Criterion) {
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_millis(1200)).sample_size(30);
     let mut rng = Rng::new(2, 0, 0);
     group.bench_function("uniform number", |bench| bench.iter(|| black_box(rng.uniform())));
-    let surface = |(name, lobes)| {
-        (name, Surface::new(String::new(), None, lobes, Order::ScatterFirst, Scattering::On))
-    };
+    let surface = |(name, lobes)| (name, Surface::new(String::new(), None, lobes, Order::ScatterFirst, Scattering::On));
     for (name, surface) in models().into_iter().map(surface).chain([("particles on a mirror", dusty())]) {
         let mut next = glass.iter().cycle();
         group.bench_function(name, |bench| {

@@ -3,6 +3,7 @@
 use super::film;
 use super::walk::Walk;
 use super::watch::{Sight, Watch};
+use crate::bsdf::Weighed;
 use crate::geometry::{Crossing, Frame, Hit};
 use crate::math::Rng;
 use crate::math::rng::mix;
@@ -257,11 +258,12 @@ fn scatter<const V: usize>(
     });
     let lane = lane.unwrap_or(V - 1);
     let Some(wo) = surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng) else { return false };
-    let density: f64 = (0..V).map(|l| bill.scattered[l] / total * surfaces[l].density(&at[l], &shares[l], wo)).sum();
+    let weighed: [Weighed; V] = std::array::from_fn(|l| surfaces[l].weigh(&at[l], &shares[l], wo));
+    let density: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
     for l in 0..V {
         // `scattered` may have been cut to zero by a limit in this lane only.
         let alive = (bill.scattered[l] > 0.0) as u8 as f64;
-        let flux = alive * packet.light[l].i * surfaces[l].value(&at[l], &shares[l], wo) / density;
+        let flux = alive * packet.light[l].i * weighed[l].value / density;
         packet.light[l] = Stokes::unpolarised(flux * factor);
     }
     depart(packet, crossing, meeting, wo, Event::Scatter);

@@ -74,7 +74,11 @@ const FULL: [(f64, usize); 9] =
 
 /// Numbers of the first matrix of the file, read without its reader.
 fn numbers() -> Vec<f64> {
-    let inside = include_str!("../data/bsdf/klems/ec60.xml").split("<ScatteringData>").nth(1).and_then(|rest| rest.split('<').next()).expect("a matrix");
+    let inside = include_str!("../data/bsdf/klems/ec60.xml")
+        .split("<ScatteringData>")
+        .nth(1)
+        .and_then(|rest| rest.split('<').next())
+        .expect("a matrix");
     inside.split_whitespace().map(|word| word.parse().expect("a number")).collect()
 }
 

@@ -88,7 +88,7 @@ impl Mosaic {
 /// Where the rising function `f` of a distance takes a value, by bisection of the logarithm.
 fn root(f: &dyn Fn(f64) -> f64, value: f64) -> f64 {
     let (mut low, mut high) = (1e-13f64, 20.0f64);
-    while high / low > 1.0 + 1e-9 {
+    while high / low > 1.0 + 1e-7 {
         let middle = (low * high).sqrt();
         if f(middle) < value { low = middle } else { high = middle }
     }

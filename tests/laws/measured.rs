@@ -12,9 +12,19 @@ use straylight::math::Rng;
 
 const SCREEN: &str = include_str!("../data/bsdf/klems/ec60.xml");
 
-/// All of them; their albedo is exact.
+/// The albedo of a table is exact to rounding.
+pub const EXACT: f64 = 1e-11;
+
+/// All of them.
 pub fn tables() -> Vec<Member> {
-    let table = |name, model: Box<dyn Bsdf>| Member { name, model, pole: Pole::Normal, slack: 1e-11, media: vec![[1.0, 1.0]] };
+    let table = |name, model: Box<dyn Bsdf>| Member {
+        name,
+        model,
+        pole: Pole::Grid,
+        slack: EXACT,
+        kinks: 0.0,
+        media: vec![[1.0, 1.0]],
+    };
     let mut all = vec![
         table("table, speos", Box::new(anodize())),
         table("table, zemax", Box::new(zemax())),
@@ -120,7 +130,8 @@ fn csv() -> String {
 /// A brushed surface as Speos writes it: wide across the grooves, narrow along them.
 fn brushed() -> String {
     let widths = [[0.15, 0.6], [0.6, 0.15]];
-    let mut text = String::from("OPTIS - Anisotropic BSDF surface file v8.0\n0\nComment\n4\nDesc\n0 1 0\n1 0\n1\n2\n0 90\n");
+    let mut text =
+        String::from("OPTIS - Anisotropic BSDF surface file v8.0\n0\nComment\n4\nDesc\n0 1 0\n1 0\n1\n2\n0 90\n");
     text += "3\n0 30 60\n3\n0 30 60\n0 0\n\n1\n550 30\n";
     for width in widths {
         for incidence in [0.0, 30.0, 60.0] {

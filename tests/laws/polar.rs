@@ -19,9 +19,11 @@ pub enum Pole {
     /// The way back to where the light comes from.
     Source,
     Normal,
+    /// The normal, of a function on a grid about it: 0.25 deg are a part of every sector of it.
+    Grid,
 }
 
-/// Azimuths of lobes in general, and of those about the normal: 0.25 deg are a part of every sector of a table.
+/// Azimuths of lobes in general, and on a grid.
 const TURNS: [usize; 2] = [360, 1440];
 
 /// ln of the horizon's distance over the least that is told apart.
@@ -38,6 +40,7 @@ pub struct Polar {
     pole: DVec2,
     /// True about the normal.
     wide: bool,
+    turns: usize,
 }
 
 impl Polar {
@@ -47,13 +50,14 @@ impl Polar {
         let middle = match pole {
             Pole::Specular | Pole::Bent => -along,
             Pole::Source => along,
-            Pole::Normal => DVec2::ZERO,
+            Pole::Normal | Pole::Grid => DVec2::ZERO,
         };
         let [here, beyond] = at.index.map(|n| n.re);
         let bent = if pole == Pole::Bent { here.min(beyond) } else { beyond };
         [(1.0, here, here), (-1.0, beyond, bent)].map(|(side, n, reach)| {
-            let wide = pole == Pole::Normal || middle.length() >= reach;
-            Polar { side, n, reach, pole: if wide { DVec2::ZERO } else { middle }, wide }
+            let wide = matches!(pole, Pole::Normal | Pole::Grid) || middle.length() >= reach;
+            let turns = TURNS[usize::from(pole == Pole::Grid)];
+            Polar { side, n, reach, pole: if wide { DVec2::ZERO } else { middle }, wide, turns }
         })
     }
 
@@ -65,8 +69,7 @@ impl Polar {
 
     /// The ways from the pole to the horizon in the middles of equal parts of the turn.
     pub fn rays(&self) -> impl Iterator<Item = Ray<'_>> {
-        let count = TURNS[usize::from(self.wide)];
-        (0..count).map(move |k| self.ray((k as f64 + 0.5) / count as f64))
+        (0..self.turns).map(|k| self.ray((k as f64 + 0.5) / self.turns as f64))
     }
 
     /// The way from the pole to the horizon at an azimuth (turns).
@@ -86,19 +89,14 @@ impl Polar {
         let along = |ray: Ray| -> f64 {
             (0..panels).map(|k| rule.integrate(width * k as f64, width * (k + 1) as f64, |u| ray.flux(u, g))).sum()
         };
-        let (count, sum) = self.rays().map(along).fold((0, 0.0), |(count, sum), part| (count + 1, sum + part));
-        sum * TAU / f64::from(count)
+        self.rays().map(along).sum::<f64>() * TAU / self.turns as f64
     }
 }
 
 /// Integral of `g` dw over both sides, g per sr.
-pub fn integral(at: &Incidence, pole: Pole, g: impl Fn(DVec3) -> f64) -> f64 {
-    let along = |polar: &Polar| {
-        // About the normal the rings of tables are edges of panels.
-        let (points, panels) = if polar.wide { (3, 180) } else { (10, 32) };
-        polar.integral(&GaussLegendre::new(points), panels, &g)
-    };
-    Polar::sides(at, pole).iter().map(along).sum()
+pub fn integral(at: &Incidence, pole: Pole, g: &dyn Fn(DVec3) -> f64) -> f64 {
+    let rule = GaussLegendre::new(6);
+    Polar::sides(at, pole).iter().map(|polar| polar.integral(&rule, 36, g)).sum()
 }
 
 /// One azimuth. Its coordinate u goes from 0 at the pole to 2 at the horizon.
