@@ -260,10 +260,10 @@ fn scatter<const V: usize>(
     let Some(wo) = surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng) else { return false };
     let weighed: [Weighed; V] = std::array::from_fn(|l| surfaces[l].weigh(&at[l], &shares[l], wo));
     let density: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
-    for l in 0..V {
+    for (l, weighed) in weighed.into_iter().enumerate() {
         // `scattered` may have been cut to zero by a limit in this lane only.
         let alive = (bill.scattered[l] > 0.0) as u8 as f64;
-        let flux = alive * packet.light[l].i * weighed[l].value / density;
+        let flux = alive * packet.light[l].i * weighed.value / density;
         packet.light[l] = Stokes::unpolarised(flux * factor);
     }
     depart(packet, crossing, meeting, wo, Event::Scatter);

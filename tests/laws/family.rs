@@ -105,7 +105,7 @@ fn polished() -> Vec<Member> {
 
 fn facets() -> Vec<Member> {
     let facets = |name, distribution, alpha, facets, side| {
-        with_kinks(1e-3, member(name, Pole::Specular, 1e-3, Microfacet::new(distribution, alpha, facets, side)))
+        with_kinks(1.5e-3, member(name, Pole::Specular, 1e-3, Microfacet::new(distribution, alpha, facets, side)))
     };
     use Distribution::{Beckmann, Ggx};
     vec![

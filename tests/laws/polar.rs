@@ -95,8 +95,8 @@ impl Polar {
 
 /// Integral of `g` dw over both sides, g per sr.
 pub fn integral(at: &Incidence, pole: Pole, g: &dyn Fn(DVec3) -> f64) -> f64 {
-    let rule = GaussLegendre::new(6);
-    Polar::sides(at, pole).iter().map(|polar| polar.integral(&rule, 36, g)).sum()
+    let rule = GaussLegendre::new(10);
+    Polar::sides(at, pole).iter().map(|polar| polar.integral(&rule, 32, g)).sum()
 }
 
 /// One azimuth. Its coordinate u goes from 0 at the pole to 2 at the horizon.
