@@ -122,7 +122,7 @@ struct Point {
 
 impl Point {
     /// Angle from the normal on the side of the light, rad, > 0 where the specular ray goes.
-    fn from_above(&self) -> f64 {
+    fn polar_angle(&self) -> f64 {
         if self.side == 0 { self.scatter } else { PI - self.scatter }
     }
 }
@@ -150,7 +150,7 @@ fn write(folder: &Path, args: &BsdfArgs, model: &Scatterer) -> Result<(), Error>
     save("bsdf_beta.png", &draw([decades("|beta - beta0|, towards the source"), decades("BSDF, 1/sr")], &towards)?)?;
     let angle = curves(&points, &angles, |p| Some([p.scatter.to_degrees(), p.value]));
     save("bsdf_angle.png", &draw([linear("angle of scatter, deg"), decades("BSDF, 1/sr")], &angle)?)?;
-    let around = curves(&points, &angles, |p| Some([p.from_above(), p.value]));
+    let around = curves(&points, &angles, |p| Some([p.polar_angle(), p.value]));
     save("bsdf_polar.png", &polar(&at, "BSDF, 1/sr", &around).map_err(failed(folder))?)?;
     let tis = tis_curves(model);
     save("tis.png", &draw([linear("angle of incidence, deg"), linear("TIS")], &tis)?)?;

@@ -129,7 +129,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Cells of equal probability of the `density` (1/sr) for `draws`; `panels` (even) of it along each azimuth.
+    /// Cells of equal probability of the `density` (1/sr) for `draws`; `panels` of it along each azimuth, a multiple of 36 so that rings of tables are edges of panels.
     pub fn new(at: &Incidence, pole: Pole, [draws, panels]: [usize; 2], density: &dyn Fn(DVec3) -> f64) -> Cells {
         let sides = Polar::sides(at, pole).into_iter().map(|polar| Mosaic::new(polar, [draws, panels], density));
         Cells { draws, mosaics: sides.filter(|mosaic| mosaic.probability > 0.0).collect() }

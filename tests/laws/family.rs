@@ -84,8 +84,8 @@ fn radial() -> Vec<Member> {
         member("harvey transmitted", Pole::Specular, 5e-6, Harvey::new(0.1, 0.03, -2.6, Side::Transmit)),
         member("gaussian", Pole::Specular, 5e-6, Gaussian::new(5.0, 0.1, Side::Reflect)),
         member("gaussian transmitted", Pole::Specular, 5e-6, Gaussian::new(0.5, 0.3, Side::Transmit)),
-        member("cosine power", Pole::Specular, 5e-6, CosinePower::new(0.4, 12.5, Axis::Specular)),
-        member("cosine power, retro", Pole::Source, 5e-6, CosinePower::new(0.4, 7.0, Axis::Source)),
+        member("cosine power", Pole::Normal, 5e-6, CosinePower::new(0.4, 12.5, Axis::Specular)),
+        member("cosine power, retro", Pole::Normal, 5e-6, CosinePower::new(0.4, 7.0, Axis::Source)),
     ]
 }
 

@@ -16,8 +16,6 @@ pub enum Pole {
     Specular,
     /// The same, of light that is refracted after it is scattered: what passes goes no farther than grazing light is bent.
     Bent,
-    /// The way back to where the light comes from.
-    Source,
     Normal,
     /// The normal, of a function on a grid about it: 0.25 deg are a part of every sector of it.
     Grid,
@@ -49,7 +47,6 @@ impl Polar {
         let along = at.wi.truncate() * at.index[0].re;
         let middle = match pole {
             Pole::Specular | Pole::Bent => -along,
-            Pole::Source => along,
             Pole::Normal | Pole::Grid => DVec2::ZERO,
         };
         let [here, beyond] = at.index.map(|n| n.re);
