@@ -90,10 +90,14 @@ impl Polar {
     }
 }
 
+/// Points of quadrature in a panel, and panels along an azimuth: of a smooth function, and of one with kinks.
+pub const SMOOTH: [usize; 2] = [10, 32];
+pub const KINKED: [usize; 2] = [4, 120];
+
 /// Integral of `g` dw over both sides, g per sr.
-pub fn integral(at: &Incidence, pole: Pole, g: &dyn Fn(DVec3) -> f64) -> f64 {
-    let rule = GaussLegendre::new(10);
-    Polar::sides(at, pole).iter().map(|polar| polar.integral(&rule, 32, g)).sum()
+pub fn integral(at: &Incidence, pole: Pole, [points, panels]: [usize; 2], g: &dyn Fn(DVec3) -> f64) -> f64 {
+    let rule = GaussLegendre::new(points);
+    Polar::sides(at, pole).iter().map(|polar| polar.integral(&rule, panels, g)).sum()
 }
 
 /// One azimuth. Its coordinate u goes from 0 at the pole to 2 at the horizon.
