@@ -45,9 +45,10 @@ Example:
   straylight bsdf system.ron ground --beyond N-BK7 --incidence \"45 deg\"
 
 The model by itself, without the coating of a surface: BSDF in the plane of incidence against |beta - beta0|, against
-angle and around the point, TIS against angle of incidence. On the terminal the TIS, and of polished surfaces the rms height that scatters at
-this wavelength; in the folder bsdf_beta.png, bsdf_angle.png, bsdf_polar.png and tis.png with bsdf.csv and tis.csv. Angles are in the medium
-they are in; those of scatter are positive beyond the normal, where the specular ray goes.";
+angle and around the point, TIS against angle of incidence. On the terminal the TIS, and of polished surfaces the rms
+height that scatters at this wavelength; in the folder bsdf_beta.png, bsdf_angle.png, bsdf_polar.png and tis.png with
+bsdf.csv and tis.csv. Angles are in the medium they are in; those of scatter are positive beyond the normal, where the
+specular ray goes.";
 
 /// Angles of incidence of the table on the terminal, deg.
 const ROWS: [f64; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 80.0, 85.0, 89.0];
