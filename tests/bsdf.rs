@@ -56,7 +56,7 @@ fn a_model_is_printed_and_drawn() {
     let (folder, output) = run(&text, &["bsdf", "system.ron", "black", "-o", "out", "--incidence", "30 deg"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let out = folder.path().join("out");
-    for picture in ["bsdf_beta.png", "bsdf_angle.png", "tis.png"] {
+    for picture in ["bsdf_beta.png", "bsdf_angle.png", "bsdf_polar.png", "tis.png"] {
         assert!(fs::read(out.join(picture)).expect(picture).starts_with(b"\x89PNG"), "{picture}");
     }
     // 2 pi b0 l^2/2 (101^(1/4)... of the closed form at normal incidence: l^2/2 ((1 + 1/l^2)^d - 1)/d, d = 1/4.

@@ -11,6 +11,7 @@ use straylight::system::compile::Compiled;
 use straylight::tally::results::Results;
 use straylight::tally::{Fold, Live};
 use straylight::transport::book::Book;
+use straylight::transport::importance::Importance;
 use straylight::transport::walk::{Walk, quotas};
 use straylight::transport::watch::Unwatched;
 use straylight::transport::{self, Counts, summary};
@@ -78,6 +79,7 @@ fn sta_03_the_order_in_which_batches_are_traced_does_not_matter() {
     let (scene, settings) = (&compiled.scene, &compiled.settings);
     let whole = counts(&compiled, 2);
     let quotas = quotas(scene, settings.batch_rays());
+    let importance = Importance::declared(scene);
     let batches = settings.batches();
     let backwards: Vec<u64> = (0..batches).rev().collect();
     // 37 has no divisor in common with the number of batches.
@@ -88,8 +90,7 @@ fn sta_03_the_order_in_which_batches_are_traced_does_not_matter() {
             .into_iter()
             .map(|batch| {
                 let book = Book::new(&whole.layout, live.take().expect("a bookkeeper"), Some(&whole.rows));
-                let seed = settings.seed;
-                let mut walk = Walk { scene, settings, seed, book, watch: Unwatched, waiting: Vec::new(), start: 0.0 };
+                let mut walk = Walk::new(scene, settings, &importance, book, Unwatched);
                 walk.batch(batch, &quotas);
                 let sums = walk.book.finish();
                 live = Some(walk.book.live);

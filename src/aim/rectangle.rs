@@ -58,8 +58,7 @@ impl Rectangle {
         let (low, high) = (middle.truncate() - half, middle.truncate() + half);
         let estimate = 4.0 * half.x * half.y * height / distance.powi(3);
         let near = half.length() > 0.5 * distance;
-        let method =
-            if estimate < SMALL && !near { Method::Area } else { Method::quadrangle(low, high, height) };
+        let method = if estimate < SMALL && !near { Method::Area } else { Method::quadrangle(low, high, height) };
         Some(Rectangle { frame, low, high, height, method })
     }
 

@@ -3,13 +3,23 @@ use crate::math::sampling;
 use std::f64::consts::PI;
 
 fn plate(half: DVec3, centre: DVec3) -> Target {
-    Target { label: String::new(), frame: Frame::from_z_x(DVec3::new(0.3, -0.5, 0.8).normalize(), DVec3::X), centre, half }
+    Target {
+        label: String::new(),
+        frame: Frame::from_z_x(DVec3::new(0.3, -0.5, 0.8).normalize(), DVec3::X),
+        centre,
+        half,
+    }
 }
 
 /// From far and near, over an edge, a corner and the middle, flat and thick, small and large.
 fn views() -> Vec<View> {
     let boxes = [DVec3::new(1.0, 2.0, 0.0), DVec3::new(0.3, 0.3, 0.3), DVec3::new(5.0, 0.1, 1.0)];
-    let aways = [DVec3::new(0.0, 0.0, 0.2), DVec3::new(3.0, 1.0, 7.0), DVec3::new(-40.0, 90.0, 30.0), DVec3::new(6.0, 0.0, -1.5)];
+    let aways = [
+        DVec3::new(0.0, 0.0, 0.2),
+        DVec3::new(3.0, 1.0, 7.0),
+        DVec3::new(-40.0, 90.0, 30.0),
+        DVec3::new(6.0, 0.0, -1.5),
+    ];
     let see = |half: DVec3, away: DVec3| {
         let target = plate(half, DVec3::new(0.7, -0.2, 0.1));
         target.seen(target.centre + target.frame.to_world(away))
@@ -56,7 +66,12 @@ fn the_density_is_that_of_the_draws() {
                 (values.iter().map(|v| (v - m).powi(2)).sum::<f64>() / (n as f64).powi(2)).sqrt()
             };
             let sigma = error(&own).hypot(error(&cone));
-            assert!((mean(&own) - mean(&cone)).abs() < 4.5 * sigma, "{i} {part}: {} {} ± {sigma}", mean(&own), mean(&cone));
+            assert!(
+                (mean(&own) - mean(&cone)).abs() < 4.5 * sigma,
+                "{i} {part}: {} {} ± {sigma}",
+                mean(&own),
+                mean(&cone)
+            );
         }
     }
 }

@@ -46,6 +46,15 @@ pub use radial::Side;
 pub use spectral::Spectral;
 pub use tabulated::Tabulated;
 
+/// BSDF and density of draws towards one direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Weighed {
+    /// f, 1/sr.
+    pub value: f64,
+    /// Density of the sampler's directions, 1/sr.
+    pub density: f64,
+}
+
 /// A scatter model. `eval`, `pdf`, `sample` and `albedo` describe one and the same function at every incidence.
 pub trait Bsdf: Send + Sync + std::fmt::Debug {
     /// f(wi -> wo), 1/sr, >= 0.
@@ -53,6 +62,11 @@ pub trait Bsdf: Send + Sync + std::fmt::Debug {
 
     /// Density of `sample`'s directions per solid angle, 1/sr; positive wherever `eval` is (to which it need not be proportional).
     fn pdf(&self, at: &Incidence, wo: DVec3) -> f64;
+
+    /// `eval` and `pdf` at once, where they have work in common.
+    fn weigh(&self, at: &Incidence, wo: DVec3) -> Weighed {
+        Weighed { value: self.eval(at, wo), density: self.pdf(at, wo) }
+    }
 
     /// Draws a direction with density `pdf`. `None`: the draw fell outside the hemispheres that light can take;
     /// it counts as a draw of weight zero, and `pdf` does not integrate to 1 then.

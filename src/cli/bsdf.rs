@@ -4,12 +4,12 @@ use super::table::{Table, digits};
 use super::{Chosen, Ending, tell, warn};
 use clap::Args;
 use glam::DVec3;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use straylight::error::Error;
 use straylight::optics::refraction::reflect;
-use straylight::report::{self, Curve, Division, Ruler, chart};
+use straylight::report::{self, Curve, Division, Ruler, chart, polar};
 use straylight::system::compile::{Scatterer, scatterer};
 use straylight::system::units::{Angle, FromText, Wavelength};
 
@@ -44,10 +44,11 @@ Example:
   straylight bsdf systems/triplet/system.ron wall -o wall
   straylight bsdf system.ron ground --beyond N-BK7 --incidence \"45 deg\"
 
-The model by itself, without the coating of a surface: BSDF in the plane of incidence against |beta - beta0| and against
-angle, TIS against angle of incidence. On the terminal the TIS, and of polished surfaces the rms height that scatters at
-this wavelength; in the folder bsdf_beta.png, bsdf_angle.png and tis.png with bsdf.csv and tis.csv. Angles are in the medium
-they are in; those of scatter are positive beyond the normal, where the specular ray goes.";
+The model by itself, without the coating of a surface: BSDF in the plane of incidence against |beta - beta0|, against
+angle and around the point, TIS against angle of incidence. On the terminal the TIS, and of polished surfaces the rms
+height that scatters at this wavelength; in the folder bsdf_beta.png, bsdf_angle.png, bsdf_polar.png and tis.png with
+bsdf.csv and tis.csv. Angles are in the medium they are in; those of scatter are positive beyond the normal, where the
+specular ray goes.";
 
 /// Angles of incidence of the table on the terminal, deg.
 const ROWS: [f64; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 80.0, 85.0, 89.0];
@@ -120,6 +121,13 @@ struct Point {
     value: f64,
 }
 
+impl Point {
+    /// Angle from the normal on the side of the light, rad, > 0 where the specular ray goes.
+    fn polar_angle(&self) -> f64 {
+        if self.side == 0 { self.scatter } else { PI - self.scatter }
+    }
+}
+
 fn write(folder: &Path, args: &BsdfArgs, model: &Scatterer) -> Result<(), Error> {
     let failed = |path: &Path| {
         let path = path.to_owned();
@@ -143,11 +151,13 @@ fn write(folder: &Path, args: &BsdfArgs, model: &Scatterer) -> Result<(), Error>
     save("bsdf_beta.png", &draw([decades("|beta - beta0|, towards the source"), decades("BSDF, 1/sr")], &towards)?)?;
     let angle = curves(&points, &angles, |p| Some([p.scatter.to_degrees(), p.value]));
     save("bsdf_angle.png", &draw([linear("angle of scatter, deg"), decades("BSDF, 1/sr")], &angle)?)?;
+    let around = curves(&points, &angles, |p| Some([p.polar_angle(), p.value]));
+    save("bsdf_polar.png", &polar(&at, "BSDF, 1/sr", &around).map_err(failed(folder))?)?;
     let tis = tis_curves(model);
     save("tis.png", &draw([linear("angle of incidence, deg"), linear("TIS")], &tis)?)?;
     save("bsdf.csv", rows(&points).as_bytes())?;
     save("tis.csv", tis_rows(model).as_bytes())?;
-    tell(&format!("{}: bsdf_beta.png, bsdf_angle.png, tis.png, bsdf.csv, tis.csv\n", folder.display()));
+    tell(&format!("{}: bsdf_beta.png, bsdf_angle.png, bsdf_polar.png, tis.png, bsdf.csv, tis.csv\n", folder.display()));
     Ok(())
 }
 

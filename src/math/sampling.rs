@@ -36,6 +36,18 @@ fn sin_cos_of_eighth(x: f64) -> (f64, f64) {
     (x + x * series(&SIN), 1.0 + series(&COS))
 }
 
+/// Sine and cosine of `u` turns, 0 <= u <= 1, to 2e-16.
+pub fn sin_cos_of_turn(u: f64) -> (f64, f64) {
+    let quarter = (4.0 * u).round();
+    let (sin, cos) = sin_cos_of_eighth(TAU * (u - 0.25 * quarter));
+    match quarter as u8 {
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        3 => (-cos, sin),
+        _ => (sin, cos),
+    }
+}
+
 /// On the ring between radii `inner` and 1, 0 <= inner < 1: density 1 / (pi (1 - inner^2)).
 pub fn annulus([u, v]: [f64; 2], inner: f64) -> DVec2 {
     let radius = (inner * inner + u * (1.0 - inner) * (1.0 + inner)).sqrt();
@@ -125,6 +137,16 @@ mod tests {
             let x = FRAC_PI_4 * i as f64 / 1000.0;
             let ((sin, cos), (s, c)) = (sin_cos_of_eighth(x), x.sin_cos());
             assert!((sin - s).abs() <= 2.3e-16 && (cos - c).abs() <= 2.3e-16, "{x}");
+        }
+    }
+
+    #[test]
+    fn sines_of_a_turn_are_exact_to_the_last_digit() {
+        for i in 0..=1000 {
+            let u = f64::from(i) / 1000.0;
+            let ((sin, cos), (s, c)) = (sin_cos_of_turn(u), (TAU * u).sin_cos());
+            // The library's argument is rounded: 4e-16.
+            assert!((sin - s).abs() <= 7e-16 && (cos - c).abs() <= 7e-16, "{u}");
         }
     }
 

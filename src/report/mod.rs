@@ -28,6 +28,6 @@ mod write;
 
 pub use atomic::create;
 pub use measured::{below, measured};
-pub use picture::{Curve, Division, Ink, Line, Panel, Ruler, Span, Stroke, chart, curves};
+pub use picture::{Curve, Division, Ink, Line, Panel, Ruler, Span, Stroke, chart, curves, polar};
 pub use text::text;
 pub use write::{WriteError, write};

@@ -15,13 +15,14 @@
 
 pub mod dust;
 
-use crate::bsdf::Bsdf;
 use crate::bsdf::contamination::Deposit;
+use crate::bsdf::{Bsdf, Weighed};
 use crate::coating::Coating;
 use crate::math::Rng;
 use crate::optics::{Incidence, Split};
 use dust::Dust;
 use glam::DVec3;
+use smallvec::SmallVec;
 use std::sync::Arc;
 
 /// How scatter and coating share the light (see the module).
@@ -63,7 +64,7 @@ pub struct Surface {
 }
 
 /// The bill of one arrival, fractions of the incident flux: what each branch gets, before polarisation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Shares {
     /// Coating amplitudes, to be applied to the Stokes vector.
     pub split: Option<Split>,
@@ -73,6 +74,8 @@ pub struct Shares {
     pub lobes: [f64; 2],
     /// Scattered fraction of the incident flux.
     pub scattered: f64,
+    /// The part of it that every lobe has, in their order.
+    parts: SmallVec<[f64; 4]>,
 }
 
 impl Surface {
@@ -121,84 +124,85 @@ impl Surface {
     pub fn shares(&self, at: &Incidence) -> Shares {
         let split = self.specular.as_ref().map(|coating| coating.split(at));
         if self.lobes.is_empty() {
-            return Shares { split, specular: [1.0; 2], lobes: [0.0; 2], scattered: 0.0 };
+            let parts = SmallVec::new();
+            return Shares { split, specular: [1.0; 2], lobes: [0.0; 2], scattered: 0.0, parts };
         }
-        let [back, through] = albedo(&self.lobes[..self.own], at);
+        let albedos: SmallVec<[f64; 4]> = self.lobes.iter().map(|lobe| lobe.albedo(at)).collect();
+        let [back, through] = both_ways(&self.lobes[..self.own], &albedos);
         let all = back + through;
-        let clean = match self.order {
-            Order::ScatterFirst => Shares { split, specular: [1.0 - all; 2], lobes: [1.0; 2], scattered: all },
-            Order::Total => Shares { split, specular: [0.0, 1.0 - all], lobes: [1.0; 2], scattered: all },
+        let [specular, lobes] = match self.order {
+            Order::ScatterFirst => [[1.0 - all; 2], [1.0; 2]],
+            Order::Total => [[0.0, 1.0 - all], [1.0; 2]],
             Order::Scaled => {
                 let r = split.map_or(1.0, |s| s.reflected.unpolarised());
                 let t = split.map_or(1.0, |s| s.transmitted.unpolarised());
-                Shares {
-                    split,
-                    specular: [1.0 - back, 1.0 - through],
-                    lobes: [r, t],
-                    scattered: r * back + t * through,
-                }
+                [[1.0 - back, 1.0 - through], [r, t]]
             }
         };
-        let Some(dust) = &self.dust else { return clean };
         // What the surface sends on passes the particles; what they scatter comes on top.
-        let kept = dust.keeps(at);
+        let kept = self.dust.as_ref().map_or([1.0; 2], |dust| dust.keeps(at));
         let by = |factors: [f64; 2]| [kept[0] * factors[0], kept[1] * factors[1]];
-        let lobes = by(clean.lobes);
-        let dusty: f64 = albedo(&self.lobes[self.own..], at).iter().sum();
-        let scattered = lobes[0] * back + lobes[1] * through + dusty;
-        Shares { split, specular: by(clean.specular), lobes, scattered }
+        let clean = Shares { split, specular: by(specular), lobes: by(lobes), scattered: 0.0, parts: albedos };
+        self.billed(clean)
+    }
+
+    /// The same with the parts of the lobes, so far their albedos, times their factors, and the sum.
+    fn billed(&self, mut shares: Shares) -> Shares {
+        for (at, part) in shares.parts.iter_mut().enumerate() {
+            *part *= self.factor(at, shares.lobes);
+        }
+        shares.scattered = shares.parts.iter().sum();
+        shares
+    }
+
+    /// Factor on the BSDF of a lobe, by the [`Shares::lobes`].
+    fn factor(&self, lobe: usize, lobes: [f64; 2]) -> f64 {
+        if lobe < self.own { lobes[self.lobes[lobe].transmits() as usize] } else { 1.0 }
     }
 
     /// Reflected and transmitted albedo of all lobes together, 0..1 each.
     pub fn albedo(&self, at: &Incidence) -> [f64; 2] {
-        albedo(&self.lobes, at)
-    }
-
-    /// All lobes, each with the factor on its BSDF.
-    fn weighted<'a>(&'a self, shares: &'a Shares) -> impl Iterator<Item = (f64, &'a dyn Bsdf)> + 'a {
-        self.lobes.iter().enumerate().map(|(at, lobe)| {
-            let factor = if at < self.own { shares.lobes[lobe.transmits() as usize] } else { 1.0 };
-            (factor, lobe.as_ref())
-        })
+        let albedos: SmallVec<[f64; 4]> = self.lobes.iter().map(|lobe| lobe.albedo(at)).collect();
+        both_ways(&self.lobes, &albedos)
     }
 
     /// Draws a scattered direction from the one mixture of all lobes. `None`: the draw left the hemispheres that light can
-    /// take; it carries nothing, and the mean stays right because `density` integrates to the chance of a valid draw.
+    /// take; it carries nothing, and the mean stays right because the density integrates to the chance of a valid draw.
     pub fn draw(&self, at: &Incidence, shares: &Shares, rng: &mut Rng) -> Option<DVec3> {
         if let [lobe] = self.lobes.as_slice() {
             return lobe.sample(at, rng);
         }
+        // A lobe is drawn from in proportion to its part of the scattered flux.
         let mut rest = rng.uniform() * shares.scattered;
-        let chosen = self.weighted(shares).find(|(factor, lobe)| {
-            rest -= factor * lobe.albedo(at);
+        let chosen = self.lobes.iter().zip(&shares.parts).find(|(_, part)| {
+            rest -= **part;
             rest < 0.0
         });
-        chosen.map(|(_, lobe)| lobe).or(self.lobes.last().map(Box::as_ref))?.sample(at, rng)
-    }
-
-    /// Density of `draw`'s directions, 1/sr.
-    pub fn density(&self, at: &Incidence, shares: &Shares, wo: DVec3) -> f64 {
-        if let [lobe] = self.lobes.as_slice() {
-            return lobe.pdf(at, wo);
-        }
-        // A lobe is drawn from in proportion to its part of the scattered flux.
-        let part = |(factor, lobe): (f64, &dyn Bsdf)| factor * lobe.albedo(at) * lobe.pdf(at, wo);
-        self.weighted(shares).map(part).sum::<f64>() / shares.scattered
+        chosen.map(|(lobe, _)| lobe).or(self.lobes.last())?.sample(at, rng)
     }
 
     /// f |cos theta_s| of all lobes together as the coating lets it through, 1/sr: scattered flux per solid angle and
-    /// incident flux.
-    pub fn value(&self, at: &Incidence, shares: &Shares, wo: DVec3) -> f64 {
-        let f: f64 = self.weighted(shares).map(|(factor, lobe)| factor * lobe.eval(at, wo)).sum();
-        f * wo.z.abs()
+    /// incident flux; and the density of `draw`'s directions, 1/sr.
+    pub fn weigh(&self, at: &Incidence, shares: &Shares, wo: DVec3) -> Weighed {
+        if let [lobe] = self.lobes.as_slice() {
+            let Weighed { value, density } = lobe.weigh(at, wo);
+            return Weighed { value: self.factor(0, shares.lobes) * value * wo.z.abs(), density };
+        }
+        let mut all = Weighed::default();
+        for (k, (lobe, part)) in self.lobes.iter().zip(&shares.parts).enumerate() {
+            let Weighed { value, density } = lobe.weigh(at, wo);
+            all.value += self.factor(k, shares.lobes) * value;
+            all.density += part * density;
+        }
+        Weighed { value: all.value * wo.z.abs(), density: all.density / shares.scattered }
     }
 }
 
 /// Reflected and transmitted albedo of lobes together.
-fn albedo(lobes: &[Box<dyn Bsdf>], at: &Incidence) -> [f64; 2] {
-    let mut albedo = [0.0; 2];
-    for lobe in lobes {
-        albedo[lobe.transmits() as usize] += lobe.albedo(at);
+fn both_ways(lobes: &[Box<dyn Bsdf>], albedos: &[f64]) -> [f64; 2] {
+    let mut both = [0.0; 2];
+    for (lobe, albedo) in lobes.iter().zip(albedos) {
+        both[lobe.transmits() as usize] += albedo;
     }
-    albedo
+    both
 }

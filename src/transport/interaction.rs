@@ -247,7 +247,13 @@ fn leave<const V: usize>(
 }
 
 /// Sets off in local direction `local`.
-pub(super) fn depart<const V: usize>(packet: &mut Packet<V>, crossing: &Crossing, meeting: &Meeting<V>, local: DVec3, way: Event) {
+pub(super) fn depart<const V: usize>(
+    packet: &mut Packet<V>,
+    crossing: &Crossing,
+    meeting: &Meeting<V>,
+    local: DVec3,
+    way: Event,
+) {
     packet.ray.direction = meeting.frame.to_world(local).normalize();
     let passes = local.z < 0.0;
     film::depart(packet, crossing, passes);

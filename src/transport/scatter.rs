@@ -4,6 +4,7 @@ use super::importance::{Advice, Occasion};
 use super::interaction::{Bill, Meeting, depart};
 use super::walk::Walk;
 use super::watch::Watch;
+use crate::bsdf::Weighed;
 use crate::geometry::{Crossing, Frame};
 use crate::math::Rng;
 use crate::math::rng::mix;
@@ -38,7 +39,7 @@ pub fn plan<'a, const V: usize, W: Watch>(
     let surface = meeting.surfaces[0];
     let flux = factor * bill.scattered.iter().fold(0.0, |most: f64, flux| most.max(*flux));
     let specular = refraction::reflect(meeting.at[0].wi);
-    let broad = importance.map.is_none() || surface.density(&meeting.at[0], &meeting.shares[0], specular) < BROAD;
+    let broad = importance.map.is_none() || surface.weigh(&meeting.at[0], &meeting.shares[0], specular).density < BROAD;
     let occasion = Occasion {
         part: meeting.part,
         front: meeting.front,
@@ -104,12 +105,13 @@ fn one<const V: usize>(
         surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng)
     };
     let Some(wo) = drawn else { return false };
-    let lobes: f64 = (0..V).map(|l| bill.scattered[l] / total * surfaces[l].density(&at[l], &shares[l], wo)).sum();
+    let weighed: [Weighed; V] = std::array::from_fn(|l| surfaces[l].weigh(&at[l], &shares[l], wo));
+    let lobes: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
     let density = if plan.advice.is_plain() { lobes } else { plan.advice.density(meeting.frame.to_world(wo), lobes) };
-    for l in 0..V {
+    for (l, weighed) in weighed.into_iter().enumerate() {
         // `scattered` may have been cut to zero by a limit in this lane only.
         let alive = (bill.scattered[l] > 0.0) as u8 as f64;
-        let flux = alive * packet.light[l].i * surfaces[l].value(&at[l], &shares[l], wo) / density;
+        let flux = alive * packet.light[l].i * weighed.value / density;
         packet.light[l] = Stokes::unpolarised(flux * plan.factor);
     }
     packet.level = if aimed { plan.level } else { 0.0 };

@@ -13,6 +13,7 @@ use straylight::system::document::Document;
 use straylight::tally::results::{PathResult, Results};
 use straylight::tally::{Layout, Live};
 use straylight::transport::book::Book;
+use straylight::transport::importance::Importance;
 use straylight::transport::paths::Rows;
 use straylight::transport::walk::{Walk, quotas};
 use straylight::transport::watch::{Sight, Watch};
@@ -130,7 +131,7 @@ pub fn shot(compiled: &Compiled, rays: &[Ray]) -> Trace {
             let transverse = ray.direction.any_orthonormal_vector();
             let birth = Birth { ray, from: None, wavelength: 550e-9, transverse };
             let rng = straylight::math::Rng::new(1, history as u64, 0);
-            let mut packet = walk.born(0, history as u64, birth, 1.0, rng);
+            let mut packet = walk.born(&compiled.scene.sources[0], (0, history as u64), birth, 1.0, rng);
             walk.history(&mut packet);
         }
     })
@@ -141,7 +142,7 @@ pub fn shot_at(compiled: &Compiled, ray: Ray, wavelength: f64) -> Trace {
     follow(compiled, |walk| {
         let ray = Ray { origin: ray.origin - compiled.scene.shift, ..ray };
         let birth = Birth { ray, from: None, wavelength, transverse: ray.direction.any_orthonormal_vector() };
-        let mut packet = walk.born(0, 0, birth, 1.0, straylight::math::Rng::new(1, 0, 0));
+        let mut packet = walk.born(&compiled.scene.sources[0], (0, 0), birth, 1.0, straylight::math::Rng::new(1, 0, 0));
         walk.history(&mut packet);
     })
 }
@@ -151,7 +152,7 @@ pub fn shot_from(compiled: &Compiled, ray: Ray) -> Trace {
     follow(compiled, |walk| {
         let ray = Ray { origin: ray.origin - compiled.scene.shift, ..ray };
         let birth = Birth { ray, from: None, wavelength: 550e-9, transverse: ray.direction.any_orthonormal_vector() };
-        let mut packet = walk.born(0, 0, birth, 1.0, straylight::math::Rng::new(1, 0, 0));
+        let mut packet = walk.born(&compiled.scene.sources[0], (0, 0), birth, 1.0, straylight::math::Rng::new(1, 0, 0));
         packet.solids = compiled.scene.solids_at(ray.origin);
         walk.history(&mut packet);
     })
@@ -161,8 +162,8 @@ fn follow(compiled: &Compiled, go: impl FnOnce(&mut Walk<1, Seen>)) -> Trace {
     let (scene, settings) = (&compiled.scene, &compiled.settings);
     let (layout, rows) = (scene.layout(0), Rows::default());
     let book = Book::new(&layout, Live::<1>::new(layout.len()), Some(&rows));
-    let mut walk =
-        Walk { scene, settings, seed: settings.seed, book, watch: Seen::default(), waiting: Vec::new(), start: 0.0 };
+    let importance = Importance::declared(scene);
+    let mut walk = Walk::new(scene, settings, &importance, book, Seen::default());
     go(&mut walk);
     let sums = walk.book.finish();
     let total = |slot| sums.estimate(slot, 0).mean;

@@ -1,59 +1,19 @@
 //! Scatter that depends on the azimuth of the sample.
 
-use crate::samplers::{chi_squared, small_cells};
+use crate::measured::{rotated, screen, sheets};
+use crate::polar::small_cells;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
-use straylight::bsdf::klems::{Face, Matrix, Way};
-use straylight::bsdf::reading::Unmeasured;
-use straylight::bsdf::tabulated::Table;
-use straylight::bsdf::{Anisotropic, Bsdf, Klems, Tabulated, klems_xml, zemax};
+use straylight::bsdf::klems::Face;
+use straylight::bsdf::{Anisotropic, Bsdf, Klems, Tabulated};
 use straylight::math::Rng;
 use straylight::optics::Incidence;
 
-const SCREEN: &str = include_str!("../data/bsdf/klems/ec60.xml");
-
-fn screen() -> Vec<Matrix> {
-    klems_xml::parse(SCREEN, "Visible").expect("a good file")
-}
-
-/// A sheet whose every entry is another number, for light on the front.
-fn motley(way: Way) -> Matrix {
-    let Matrix { incident, outgoing, value, .. } = screen().remove(0);
-    let mut rng = Rng::new(5, way as u64, 0);
-    let value = value.iter().map(|_| 0.9 / PI * rng.uniform().powi(3)).collect();
-    Matrix { face: Face::Front, way, incident, outgoing, value }
-}
-
 fn family() -> Vec<(&'static str, Box<dyn Bsdf>)> {
-    let [front, back] = [Face::Front, Face::Back]
-        .map(|face| screen().into_iter().find(|matrix| matrix.face == face).expect("it has both"));
-    vec![
-        ("screen, front", Box::new(Klems::new(front, 1.0))),
-        ("screen, back", Box::new(Klems::new(back, 0.5))),
-        ("motley", Box::new(Klems::new(motley(Way::Reflection), 1.0))),
-        ("motley, transmitted", Box::new(Klems::new(motley(Way::Transmission), 1.0))),
-        ("table", Box::new(Anisotropic::new(rotated(&[0.0, 60.0, 110.0], [1.0, 3.0, 0.5]), 1.0).expect("below 100 %"))),
-    ]
-}
-
-/// A measured table as if it had been measured at these rotations (deg), with these factors.
-fn rotated<const N: usize>(rotations: &[f64; N], factors: [f64; N]) -> Vec<Table> {
-    let text = include_str!("../data/bsdf/AnoBlackEC1onAlum.bsdf");
-    let (head, data) = text.split_once("DataBegin").expect("a table");
-    let line = head.lines().position(|line| line.starts_with("SampleRotation")).expect("one rotation");
-    let list: Vec<String> = rotations.iter().map(f64::to_string).collect();
-    let mut lines: Vec<String> = head.lines().map(str::to_owned).collect();
-    lines.splice(line..line + 2, [format!("SampleRotation {N}"), list.join(" ")]);
-    let data = data.split("DataEnd").next().expect("its end");
-    let scaled = |factor: f64| {
-        let row = |line: &str| match line.trim().strip_prefix("TIS").and_then(|tis| tis.trim().parse::<f64>().ok()) {
-            Some(tis) => format!("TIS {}\n", factor * tis),
-            None => format!("{line}\n"),
-        };
-        data.lines().map(row).collect::<String>()
-    };
-    let body: String = factors.into_iter().map(scaled).collect();
-    zemax::parse(&format!("{}\nDataBegin\n{body}DataEnd\n", lines.join("\n")), Unmeasured::Zero).expect("a good table")
+    let table = Anisotropic::new(rotated(&[0.0, 60.0, 110.0], [1.0, 3.0, 0.5]), 1.0).expect("below 100 %");
+    let mut all = sheets();
+    all.push(("table", Box::new(table)));
+    all
 }
 
 /// Several angles and azimuths; azimuths are multiples of 0.75 deg, so that edges of patches are edges of small cells.
@@ -71,26 +31,6 @@ fn cells((name, model): (&str, &dyn Bsdf), g: &dyn Fn(DVec3) -> f64, mut sum: im
     // 0.75 deg are a part of every Klems sector, 1.25 deg of a table's.
     let sectors = if name == "table" { 288 } else { 480 };
     small_cells([180, sectors], &|wo| g(side(wo)), |wo, part| sum(side(wo), part));
-}
-
-fn bin(wo: DVec3) -> usize {
-    let turn = (wo.y.atan2(wo.x) / TAU).rem_euclid(1.0);
-    let ring = (wo.truncate().length().atan2(wo.z.abs()).to_degrees() / 1.5) as usize;
-    ring.min(59) * 48 + ((turn * 48.0) as usize).min(47)
-}
-
-#[test]
-fn every_sampler_draws_its_density_at_every_azimuth() {
-    for (name, model) in family() {
-        for (k, at) in incidences().iter().enumerate() {
-            let mut expected = vec![0.0; 60 * 48];
-            cells((name, &*model), &|wo| model.pdf(at, wo), |wo, p| expected[bin(wo)] += p);
-            assert!((expected.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{name}, {k}");
-            let mut rng = Rng::new(21, k as u64, 0);
-            let p = chi_squared(200_000, &expected, || model.sample(at, &mut rng).map(bin));
-            assert!(p > 1e-4 && p < 1.0 - 1e-4, "{name}, incidence {k}: {p}");
-        }
-    }
 }
 
 #[test]
@@ -134,7 +74,11 @@ const FULL: [(f64, usize); 9] =
 
 /// Numbers of the first matrix of the file, read without its reader.
 fn numbers() -> Vec<f64> {
-    let inside = SCREEN.split("<ScatteringData>").nth(1).and_then(|rest| rest.split('<').next()).expect("a matrix");
+    let inside = include_str!("../data/bsdf/klems/ec60.xml")
+        .split("<ScatteringData>")
+        .nth(1)
+        .and_then(|rest| rest.split('<').next())
+        .expect("a matrix");
     inside.split_whitespace().map(|word| word.parse().expect("a number")).collect()
 }
 

@@ -62,7 +62,7 @@ fn sca_12_particulate_contamination() {
         for (angle, wanted) in by_key(&value, "BTDF_normal_incidence") {
             let (sin, cos) = f64::to_radians(angle).sin_cos();
             let wo = DVec3::new(sin, 0.0, -cos);
-            let found = screen.value(&at, &shares, wo) / cos;
+            let found = screen.weigh(&at, &shares, wo).value / cos;
             // The reference takes the layer to first order: t = 1 - E instead of exp(-E). Its rings are resolved to 1 %.
             close(found / wanted, 1.0, 0.012, &format!("SCA-12 level {level}: BTDF at {angle} deg"));
         }
@@ -126,7 +126,8 @@ fn what_is_drawn_carries_what_is_scattered() {
             for _ in 0..draws {
                 let Some(wo) = surface.draw(&at, &shares, &mut rng) else { continue };
                 assert!((wo.length() - 1.0).abs() < 1e-9);
-                let weight = surface.value(&at, &shares, wo) / surface.density(&at, &shares, wo);
+                let weighed = surface.weigh(&at, &shares, wo);
+                let weight = weighed.value / weighed.density;
                 sum += weight;
                 squares += weight * weight;
             }
@@ -151,8 +152,8 @@ fn the_forward_lobe_folds_about_the_specular_ray() {
     let at = Incidence::in_air(0.5, LINE);
     let towards = |theta: f64, z: f64| DVec3::new(-theta.sin(), 0.0, z * theta.cos());
     for offset in [0.01, 0.05, 0.2] {
-        let folded = mirror.value(&at, &mirror.shares(&at), towards(0.5 + offset, 1.0));
-        let passed = screen.value(&at, &screen.shares(&at), towards(0.5 + offset, -1.0));
+        let folded = mirror.weigh(&at, &mirror.shares(&at), towards(0.5 + offset, 1.0)).value;
+        let passed = screen.weigh(&at, &screen.shares(&at), towards(0.5 + offset, -1.0)).value;
         let kept = (-deposit.extinction(LINE) / 0.5f64.cos()).exp();
         // Beside it lies the little that both passes throw straight back.
         assert!((folded / (passed * (1.0 + kept)) - 1.0).abs() < 0.05, "{offset}: {folded} {passed}");
@@ -174,8 +175,8 @@ fn the_share_that_goes_on_is_an_integral() {
             for j in 0..sectors {
                 let phi = TAU * (f64::from(j) + 0.5) / f64::from(sectors);
                 let wo = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
-                sum +=
-                    wall.value(&at, &shares, wo) * theta.sin() * 0.5 * PI / f64::from(rings) * TAU / f64::from(sectors);
+                sum += wall.weigh(&at, &shares, wo).value * theta.sin() * 0.5 * PI / f64::from(rings) * TAU
+                    / f64::from(sectors);
             }
         }
         assert!((sum / shares.scattered - 1.0).abs() < 0.01, "{angle}: {sum} {}", shares.scattered);

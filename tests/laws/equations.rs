@@ -144,7 +144,7 @@ fn eq_07_the_specular_lobe_is_discrete_and_keeps_radiance() {
     for theta in [0.1, 0.7, 1.5] {
         let at = at(theta, 1.0, 1.0);
         let shares = mirror.shares(&at);
-        assert_eq!((shares.scattered, mirror.value(&at, &shares, direction(0.7, PI))), (0.0, 0.0));
+        assert_eq!((shares.scattered, mirror.weigh(&at, &shares, direction(0.7, PI)).value), (0.0, 0.0));
         let flux = shares.split.expect("a mirror").reflected.unpolarised() * shares.specular[0];
         let (before, after) = bundle(theta, reflect);
         assert!((flux * before / after - 1.0).abs() < 1e-10);

@@ -2,12 +2,16 @@
 //! `tests/data/verification/public.json` for single interfaces, dispersion and scatter.
 
 mod azimuth;
+mod cells;
 mod contamination;
 mod equations;
+mod family;
 mod films;
 mod interfaces;
+mod measured;
 mod media;
 mod phases;
+mod polar;
 mod reference;
 mod rough;
 mod samplers;

@@ -1,6 +1,6 @@
 //! Measured tables in files of several formats.
 
-use crate::samplers::zemax;
+use crate::measured::zemax;
 use glam::DVec3;
 use straylight::bsdf::reading::{Unmeasured, parse};
 use straylight::bsdf::{Bsdf, Tabulated};

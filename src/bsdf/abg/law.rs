@@ -17,7 +17,9 @@ pub struct Law {
     /// ln x of the first entry, and the step.
     start: f64,
     step: f64,
+    /// I and d I / d(ln x) times the step, at every entry.
     integral: Vec<f64>,
+    rise: Vec<f64>,
 }
 
 impl Law {
@@ -28,8 +30,10 @@ impl Law {
         // Hermite error step^4/384 of the fourth derivative, which grows as g^3: below 1e-9.
         let count = ((FARTHEST.ln() - start) / (0.02f64).min(0.06 / g.max(1e-9))).ceil();
         let step = (FARTHEST.ln() - start) / count;
-        let mut law = Law { b, g, ln_knee, start, step, integral: Vec::new() };
+        let mut law = Law { b, g, ln_knee, start, step, integral: Vec::new(), rise: Vec::new() };
         law.integral = law.tabulate(count as usize);
+        let rise = |j: usize| law.slope((start + j as f64 * step).exp()) * step;
+        law.rise = (0..law.integral.len()).map(rise).collect();
         law
     }
 
@@ -67,14 +71,38 @@ impl Law {
         self.integral[self.integral.len() - 1] + rule.integrate(FARTHEST.ln(), x.ln(), |u| self.slope(u.exp()))
     }
 
-    /// `draw` where the knee lies beyond the reach: uniform on the disc, thinned by S B >= 1/2.
-    fn draw_below(&self, reach: f64, rng: &mut Rng) -> f64 {
-        loop {
-            let x = reach * rng.uniform().sqrt();
-            if rng.uniform() < self.b * self.value(x) {
-                return x;
-            }
+    /// I at the way `t` (0..1) through the interval `j` of the table, and its derivative: cubic Hermite with the exact slopes.
+    fn between(&self, j: usize, t: f64) -> [f64; 2] {
+        let (p0, m0, m1) = (self.integral[j], self.rise[j], self.rise[j + 1]);
+        let height = self.integral[j + 1] - p0;
+        // p0 + m0 t + c t^2 + d t^3, with the value and the slope of the far end.
+        let (c, d) = (3.0 * height - 2.0 * m0 - m1, m0 + m1 - 2.0 * height);
+        [p0 + t * (m0 + t * (c + t * d)), m0 + t * (2.0 * c + 3.0 * t * d)]
+    }
+
+    /// x where I is `wanted`, below I(16).
+    fn inverse(&self, wanted: f64) -> f64 {
+        let Some(j) = self.integral.partition_point(|i| *i <= wanted).checked_sub(1) else {
+            // S is constant before the table.
+            return self.start.exp() * (wanted / self.integral[0]).sqrt();
+        };
+        // I goes at most as the square of x, so that it is straight to 2 % in a step: Newton's method squares that twice.
+        let mut t = (wanted - self.integral[j]) / (self.integral[j + 1] - self.integral[j]);
+        for _ in 0..2 {
+            let [value, slope] = self.between(j, t);
+            t = (t - (value - wanted) / slope).clamp(0.0, 1.0);
         }
+        (self.start + (j as f64 + t) * self.step).exp()
+    }
+
+    /// The same beyond the table, below I(`reach`): by bisection.
+    fn inverse_beyond(&self, wanted: f64, reach: f64) -> f64 {
+        let (mut low, mut high) = (FARTHEST, reach);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if self.integral(middle) < wanted { low = middle } else { high = middle }
+        }
+        high
     }
 }
 
@@ -95,45 +123,14 @@ impl Profile for Law {
             return self.beyond(x);
         }
         let j = (at as usize).min(last);
-        let t = at - j as f64;
-        let from = (self.start + j as f64 * self.step).exp();
-        let (m0, m1) = (self.slope(from) * self.step, self.slope(from * self.step.exp()) * self.step);
-        let (p0, p1) = (self.integral[j], self.integral[j + 1]);
-        let s = 1.0 - t;
-        s * s * ((1.0 + 2.0 * t) * p0 + t * m0) + t * t * ((3.0 - 2.0 * t) * p1 - s * m1)
+        self.between(j, at - j as f64)[0]
     }
 
-    /// Draws x in [0, `reach`) with density S x / I(reach).
-    ///
-    /// Rejection from the envelope min(1/B, x^-g) x, which is invertible and at most twice S x: with t = x / knee, half
-    /// the unit square below the knee (t < 1) and t^(1-g) above. L = ln(reach / knee), d = 2 - g:
-    ///
-    ///     mass above / mass below = 2 (e^(dL) - 1) / d,      t = (1 + v (e^(dL) - 1))^(1/d)
-    ///
-    /// Takes two numbers per trial, less than two trials on the average.
+    /// Draws x in [0, `reach`) with density S x / I(reach), by inversion of the table: one number.
     fn draw(&self, reach: f64, rng: &mut Rng) -> f64 {
-        let span = reach.ln() - self.ln_knee;
-        if self.g == 0.0 {
-            return reach * rng.uniform().sqrt();
-        }
-        if span <= 0.0 {
-            return self.draw_below(reach, rng);
-        }
-        let tail = Tail::new(2.0 - self.g, span);
-        let below = 1.0 / (1.0 + 2.0 * tail.mass());
-        loop {
-            let u = rng.uniform();
-            let (ln_t, keep) = if u < below {
-                let t = (u / below).sqrt();
-                (t.ln(), 1.0 / (1.0 + self.power(t)))
-            } else {
-                let ln_t = tail.invert((u - below) / (1.0 - below));
-                (ln_t, 1.0 / (1.0 + (-self.g * ln_t).exp()))
-            };
-            if rng.uniform() < keep {
-                return (self.ln_knee + ln_t).exp();
-            }
-        }
+        let wanted = rng.uniform() * self.integral(reach);
+        let within = wanted < self.integral[self.integral.len() - 1];
+        if within { self.inverse(wanted).min(reach) } else { self.inverse_beyond(wanted, reach) }
     }
 
     /// Where S falls to half its peak, B^(1/g); 0 for g = 0.
@@ -144,35 +141,6 @@ impl Profile for Law {
     /// S has poles pi/g from the real axis of ln x.
     fn steepness(&self) -> f64 {
         self.g
-    }
-}
-
-/// The envelope above the knee: density t^(1-g) = t^(d-1) on 1 <= t < e^span.
-struct Tail {
-    d: f64,
-    span: f64,
-    /// e^(d span) - 1.
-    growth: f64,
-}
-
-impl Tail {
-    fn new(d: f64, span: f64) -> Tail {
-        Tail { d, span, growth: if d == 0.0 { 0.0 } else { (d * span).exp_m1() } }
-    }
-
-    /// Integral of t^(d-1) from 1 to e^span.
-    fn mass(&self) -> f64 {
-        if self.d == 0.0 { self.span } else { self.growth / self.d }
-    }
-
-    /// ln t at the fraction `v` of the mass.
-    fn invert(&self, v: f64) -> f64 {
-        if self.d == 0.0 {
-            return v * self.span;
-        }
-        // e^(d span) may overflow for g near 0: there ln(1 + v e^y) = y + ln v up to 1e-16.
-        let y = self.d * self.span;
-        if y > 300.0 { (y + v.ln()).max(0.0) / self.d } else { (v * self.growth).ln_1p() / self.d }
     }
 }
 

@@ -20,8 +20,8 @@
 
 mod tis;
 
-use super::Bsdf;
-use crate::math::Rng;
+use super::{Bsdf, Weighed};
+use crate::math::{Rng, sampling};
 use crate::optics::Incidence;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -114,11 +114,16 @@ impl<P: Profile> Bsdf for Lobe<P> {
         event.index * event.index * self.a * self.shape(&event, wo)
     }
 
-    /// Proportional to eval |cos|: n_s^2 |cos| S(x) / (2 pi integral_0^reach S x dx).
     fn pdf(&self, at: &Incidence, wo: DVec3) -> f64 {
+        self.weigh(at, wo).density
+    }
+
+    /// The density is proportional to eval |cos|: n_s^2 |cos| S(x) / (2 pi integral_0^reach S x dx).
+    fn weigh(&self, at: &Incidence, wo: DVec3) -> Weighed {
         let event = self.event(at);
+        let shape = event.index * event.index * self.shape(&event, wo);
         let total = TAU * self.profile.integral(event.reach());
-        event.index * event.index * wo.z.abs() * self.shape(&event, wo) / total
+        Weighed { value: self.a * shape, density: wo.z.abs() * shape / total }
     }
 
     fn sample(&self, at: &Incidence, rng: &mut Rng) -> Option<DVec3> {
@@ -139,7 +144,7 @@ impl<P: Profile> Bsdf for Lobe<P> {
 
 /// The direction at distance `x` and azimuth `turn` (turns) from `specular` in the plane q = n beta; `None` beyond the horizon.
 pub(super) fn direction(specular: DVec2, n: f64, x: f64, side: Side, turn: f64) -> Option<DVec3> {
-    let (sin, cos) = (TAU * turn).sin_cos();
+    let (sin, cos) = sampling::sin_cos_of_turn(turn);
     let q = specular + DVec2::new(x * cos, x * sin);
     let length = q.length();
     if length >= n {

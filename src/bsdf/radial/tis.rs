@@ -54,9 +54,8 @@ impl Tis {
 
     /// TIS / a, sr, at transverse index `rho` = n_i sin(theta_i) and scattering into index `n`.
     pub fn at(&self, profile: &impl Profile, rho: f64, n: f64) -> f64 {
-        let column = ((rho / n - 1.0) / self.width).asinh();
-        let column = (column - self.start) / STEP;
-        let row = n.ln() / row_step();
+        let column = (asinh((rho / n - 1.0) / self.width) - self.start) / STEP;
+        let row = if n == 1.0 { 0.0 } else { n.ln() / row_step() };
         let inside = column >= 1.0 && column < (self.columns - 2) as f64;
         if !(inside && row >= 0.0 && row <= (ROWS - 1) as f64) {
             return integrate(profile, &GaussLegendre::new(16), rho, n);
@@ -72,6 +71,11 @@ impl Tis {
         let (i, weights) = cubic(row, ROWS);
         (0..4).map(|k| weights[k] * along(i + k)).sum::<f64>().exp()
     }
+}
+
+/// asinh(`x`) to 1e-16 of 1, which a place in a table may be off by; three times faster than to 1e-16 of itself.
+fn asinh(x: f64) -> f64 {
+    (x.abs() + (x * x + 1.0).sqrt()).ln().copysign(x)
 }
 
 fn row_step() -> f64 {

@@ -4,9 +4,9 @@
 //! bilinear in (q, phi) against cos(theta) dw is the mean of its four corners times the area of the cell. Rings are even in
 //! theta: they are as narrow near the horizon as elsewhere.
 
-use crate::math::table::bracket;
+use crate::math::sampling;
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, TAU};
 
 /// Edges of rings and sectors.
 #[derive(Clone, Debug)]
@@ -17,7 +17,12 @@ pub struct Grid {
     pub phi: Vec<f64>,
     /// Rings per rad of theta.
     rings_per_rad: f64,
+    /// The sector in which each of equal parts of the turn begins.
+    guide: Vec<u32>,
 }
+
+/// Parts of the turn, several for each sector.
+const GUIDE: usize = 1024;
 
 /// A direction on a [`Grid`].
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +37,9 @@ impl Grid {
     /// `rings` (>= 1) rings and sectors between the azimuths `phi`.
     pub fn new(rings: usize, phi: Vec<f64>) -> Grid {
         let edge = |i: usize| if i == rings { 1.0 } else { (FRAC_PI_2 * i as f64 / rings as f64).sin().powi(2) };
-        Grid { square: (0..=rings).map(edge).collect(), phi, rings_per_rad: rings as f64 / FRAC_PI_2 }
+        let start = |k: usize| phi.partition_point(|edge| *edge <= TAU * k as f64 / GUIDE as f64).max(1) as u32 - 1;
+        let guide = (0..GUIDE).map(start).collect();
+        Grid { square: (0..=rings).map(edge).collect(), phi, rings_per_rad: rings as f64 / FRAC_PI_2, guide }
     }
 
     /// Number of corners.
@@ -48,7 +55,7 @@ impl Grid {
 
     /// Direction at q = `square` and azimuth `phi` (rad); never exactly on the horizon, where there is no projected area.
     pub fn direction(&self, square: f64, phi: f64) -> DVec3 {
-        let (sin, cos) = phi.sin_cos();
+        let (sin, cos) = sampling::sin_cos_of_turn(phi / TAU);
         let radius = square.sqrt();
         DVec3::new(radius * cos, radius * sin, (1.0 - square).max(f64::MIN_POSITIVE).sqrt())
     }
@@ -59,20 +66,30 @@ impl Grid {
         let ring = self.ring(square, d.z);
         let (from, to) = (self.square[ring], self.square[ring + 1]);
         let phi = d.y.atan2(d.x);
-        let (sector, along) = bracket(&self.phi, if phi < 0.0 { phi + 2.0 * PI } else { phi });
+        let phi = if phi < 0.0 { phi + TAU } else { phi };
+        let sector = self.sector(phi);
+        let (start, end) = (self.phi[sector], self.phi[sector + 1]);
         // Rounding may carry q beyond the last edge.
-        let way = [((square - from) / (to - from)).clamp(0.0, 1.0), along];
+        let way = [((square - from) / (to - from)).clamp(0.0, 1.0), ((phi - start) / (end - start)).clamp(0.0, 1.0)];
         Place { corner: ring * self.phi.len() + sector, way }
+    }
+
+    /// The sector that holds `phi` (rad, 0 to 2 pi).
+    fn sector(&self, phi: f64) -> usize {
+        let last = self.phi.len() - 2;
+        let part = ((phi * (GUIDE as f64 / TAU)) as usize).min(GUIDE - 1);
+        let mut sector = (self.guide[part] as usize).min(last);
+        while sector < last && phi >= self.phi[sector + 1] {
+            sector += 1;
+        }
+        sector
     }
 
     /// The ring that holds q = `square`, where cos theta = `z`.
     fn ring(&self, square: f64, z: f64) -> usize {
         let last = self.square.len() - 2;
-        // theta = 2 asin(s), s = sin(theta / 2) <= 1/sqrt(2): the series to s^7 is at most 0.2 deg short, and the edges decide.
-        let s = FRAC_1_SQRT_2 * (square / (1.0 + z)).sqrt();
-        let s2 = s * s;
-        let half = s * (1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0))));
-        let mut ring = ((2.0 * half * self.rings_per_rad) as usize).min(last);
+        // A guess; the edges decide.
+        let mut ring = ((angle_about(square, z) * self.rings_per_rad) as usize).min(last);
         while ring > 0 && square < self.square[ring] {
             ring -= 1;
         }
@@ -81,6 +98,14 @@ impl Grid {
         }
         ring
     }
+}
+
+/// The polar angle (rad, 0 to pi/2) of a direction by sin^2 and cos, at most 0.2 deg short: theta = 2 asin(s), s = sin(theta / 2) <=
+/// 1/sqrt(2), to s^7.
+pub fn angle_about(square: f64, cos: f64) -> f64 {
+    let s = FRAC_1_SQRT_2 * (square / (1.0 + cos)).sqrt();
+    let s2 = s * s;
+    2.0 * s * (1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0))))
 }
 
 /// Where the linear density from `a` to `b` (>= 0, not both 0) over 0..1 has the part `u` of its mass below it.
@@ -97,6 +122,7 @@ pub fn invert(a: f64, b: f64, u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn every_direction_lies_in_its_cell() {

@@ -23,15 +23,17 @@
 
 mod grid;
 mod lobe;
+mod nodes;
 mod shape;
 mod sheet;
 
-use super::Bsdf;
+use super::{Bsdf, Weighed};
 use crate::math::Rng;
-use crate::math::table::{bracket, linear};
+use crate::math::table::linear;
 use crate::optics::Incidence;
 use glam::DVec3;
 use grid::Grid;
+use nodes::Nodes;
 use shape::{Plane, Shape};
 use sheet::Sheet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
@@ -129,8 +131,8 @@ pub struct Tabulated {
     /// Vacuum wavelengths (m) and the factors there, as in [`Table`], the scale included.
     spectrum: (Vec<f64>, Vec<f64>),
     grid: Grid,
-    /// Angles of incidence of the sheets, rad, 0 to pi/2.
-    nodes: Vec<f64>,
+    /// Angles of incidence of the sheets, 0 to pi/2.
+    nodes: Nodes,
     /// BSDF at the nodes, before the spectrum.
     sheets: Vec<Sheet>,
     /// Sign of z where the light goes.
@@ -164,7 +166,7 @@ impl Tabulated {
         };
         let sheets = nodes.iter().map(sheet).collect();
         let side = if table.transmitted { -1.0 } else { 1.0 };
-        Ok(Tabulated { spectrum: (table.wavelength, table.factor), grid, nodes, sheets, side })
+        Ok(Tabulated { spectrum: (table.wavelength, table.factor), grid, nodes: Nodes::new(nodes), sheets, side })
     }
 
     /// A direction on the side of the lobes as one with z > 0, and back.
@@ -177,9 +179,9 @@ impl Tabulated {
         linear(&self.spectrum.0, &self.spectrum.1, wavelength)
     }
 
-    /// The sheets on either side of incidence `theta` (rad) with their weights in the mixture.
-    fn around(&self, theta: f64) -> [(&Sheet, f64); 2] {
-        let (j, w) = bracket(&self.nodes, theta);
+    /// The sheets on either side of an incidence with their weights in the mixture.
+    fn around(&self, plane: &Plane) -> [(&Sheet, f64); 2] {
+        let (j, w) = self.nodes.bracket([plane.sin, plane.cos]);
         [(&self.sheets[j], 1.0 - w), (&self.sheets[j + 1], w)]
     }
 
@@ -187,7 +189,7 @@ impl Tabulated {
     fn mixture(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
         let plane = Plane::of(wi);
         let place = self.grid.place(plane.enter(wo));
-        let [(a, s), (b, w)] = self.around(plane.theta);
+        let [(a, s), (b, w)] = self.around(&plane);
         (s * a.at(&self.grid, &place) + w * b.at(&self.grid, &place), s * a.flux() + w * b.flux())
     }
 }
@@ -239,22 +241,25 @@ fn sectors(phi: &[f64]) -> Vec<f64> {
 
 impl Bsdf for Tabulated {
     fn eval(&self, at: &Incidence, wo: DVec3) -> f64 {
-        let wo = self.mirrored(wo);
-        if wo.z <= 0.0 { 0.0 } else { self.factor(at.wavelength) * self.mixture(at.wi, wo).0 }
+        self.weigh(at, wo).value
     }
 
     fn pdf(&self, at: &Incidence, wo: DVec3) -> f64 {
+        self.weigh(at, wo).density
+    }
+
+    fn weigh(&self, at: &Incidence, wo: DVec3) -> Weighed {
         let wo = self.mirrored(wo);
         if wo.z <= 0.0 {
-            return 0.0;
+            return Weighed::default();
         }
         let (f, albedo) = self.mixture(at.wi, wo);
-        if f > 0.0 { f * wo.z / albedo } else { 0.0 }
+        Weighed { value: self.factor(at.wavelength) * f, density: if f > 0.0 { f * wo.z / albedo } else { 0.0 } }
     }
 
     fn sample(&self, at: &Incidence, rng: &mut Rng) -> Option<DVec3> {
         let plane = Plane::of(at.wi);
-        let [(a, s), (b, w)] = self.around(plane.theta);
+        let [(a, s), (b, w)] = self.around(&plane);
         let [first, second] = rng.pair();
         // What the choice of the sheet leaves of the first number is uniform again.
         let (one, other) = (s * a.flux(), w * b.flux());
@@ -265,7 +270,7 @@ impl Bsdf for Tabulated {
     }
 
     fn albedo(&self, at: &Incidence) -> f64 {
-        let [(a, s), (b, w)] = self.around(Plane::of(at.wi).theta);
+        let [(a, s), (b, w)] = self.around(&Plane::of(at.wi));
         self.factor(at.wavelength) * (s * a.flux() + w * b.flux())
     }
 
@@ -285,7 +290,7 @@ mod tests {
         let plane = Plane::at(theta);
         let fine = Grid::new(720, (0..=720).map(|j| TAU * f64::from(j) / 720.0).collect());
         let exact = Sheet::new(&fine, fine.corners().map(|d| shape.at(&plane, d)).collect(), 1.0);
-        let [(a, s), (b, w)] = model.around(theta);
+        let [(a, s), (b, w)] = model.around(&plane);
         let flux = s * a.flux() + w * b.flux();
         let (mut most, mut squares, mut elsewhere) = (0.0f64, 0.0, 0.0);
         // Middles of cells of equal projected solid angle.

@@ -35,7 +35,7 @@ pub struct Shape {
 impl Shape {
     /// f up to its factor, 1/sr, at a direction in the axes of `plane`.
     pub fn at(&self, plane: &Plane, d: DVec3) -> f64 {
-        let (k, w) = bracket(&self.incidence, plane.theta);
+        let (k, w) = bracket(&self.incidence, plane.theta());
         if w == 0.0 {
             return self.turned(k, plane, d);
         }
@@ -62,12 +62,11 @@ impl Shape {
     }
 }
 
-/// The plane of incidence of one event: polar angle (rad), its sine and cosine, and the unit vector along the surface towards
-/// the specular side.
+/// The plane of incidence of one event: sine and cosine of the polar angle, and the unit vector along the surface towards the specular
+/// side.
 pub struct Plane {
-    pub theta: f64,
-    sin: f64,
-    cos: f64,
+    pub sin: f64,
+    pub cos: f64,
     forward: DVec2,
 }
 
@@ -75,12 +74,17 @@ impl Plane {
     pub fn of(wi: DVec3) -> Plane {
         let sin = wi.truncate().length();
         let forward = if sin > 0.0 { wi.truncate() / -sin } else { DVec2::X };
-        Plane { theta: sin.atan2(wi.z), sin, cos: wi.z, forward }
+        Plane { sin, cos: wi.z, forward }
     }
 
-    /// At a polar angle alone, forward along x.
+    /// At a polar angle alone (rad), forward along x.
     pub fn at(theta: f64) -> Plane {
-        Plane { theta, sin: theta.sin(), cos: theta.cos(), forward: DVec2::X }
+        Plane { sin: theta.sin(), cos: theta.cos(), forward: DVec2::X }
+    }
+
+    /// rad
+    fn theta(&self) -> f64 {
+        self.sin.atan2(self.cos)
     }
 
     /// A local direction in the axes (forward, across, normal).

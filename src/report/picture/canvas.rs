@@ -61,6 +61,29 @@ impl Canvas {
         }
     }
 
+    /// Straight lines two pixels thick between neighbours that both have a place.
+    pub fn curve(&mut self, places: &[Option<[f64; 2]>], colour: [u8; 3]) {
+        for pair in places.windows(2) {
+            if let [Some(from), Some(to)] = [pair[0], pair[1]] {
+                self.line([from, to], 2, colour, |_| true);
+            }
+        }
+    }
+
+    /// A straight line, so many pixels `thick`, where `inked` says so of the length drawn so far.
+    pub fn line(&mut self, [from, to]: [[f64; 2]; 2], thick: i32, colour: [u8; 3], inked: impl Fn(f64) -> bool) {
+        let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        let way = dx.hypot(dy);
+        let steps = (2.0 * way).ceil().max(1.0);
+        for step in 0..=steps as i32 {
+            let part = f64::from(step) / steps;
+            if inked(part * way) {
+                let [x, y] = [(from[0] + part * dx).round() as i32, (from[1] + part * dy).round() as i32];
+                self.fill([x - thick / 2, y - thick / 2], [thick, thick], colour);
+            }
+        }
+    }
+
     /// A frame of one pixel around a rectangle.
     pub fn frame(&mut self, [x, y]: [i32; 2], [width, height]: [i32; 2]) {
         self.fill([x - 1, y - 1], [width + 2, 1], INK);

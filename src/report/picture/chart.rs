@@ -42,46 +42,47 @@ pub struct Curve {
 /// The curves as a PNG with axes, title and legend.
 pub fn chart(title: &str, [x, y]: [Ruler; 2], curves: &[Curve]) -> io::Result<Vec<u8>> {
     let values = |axis: usize| curves.iter().flat_map(move |curve| curve.points.iter().map(move |point| point[axis]));
-    let spans = [Span::of(x.division, values(0)), Span::of(y.division, values(1))];
+    let reaches = [Reach::of(x.division, values(0)), Reach::of(y.division, values(1))];
     let mut canvas = Canvas::new(MARGIN[0] + SIZE[0] + MARGIN[2], MARGIN[1] + SIZE[1] + MARGIN[3]);
     canvas.text([16, 30], Anchor::Start, Weight::Bold, title);
-    for (curve, colour) in curves.iter().zip(COLOURS.iter().cycle()) {
-        trace(&mut canvas, &spans, &curve.points, *colour);
+    for (curve, colour) in curves.iter().zip(colours()) {
+        let place = |point: &[f64; 2]| Some(pixel(reaches[0].place(point[0])?, reaches[1].place(point[1])?));
+        canvas.curve(&curve.points.iter().map(place).collect::<Vec<_>>(), colour);
     }
     canvas.frame([MARGIN[0], MARGIN[1]], SIZE);
-    axes(&mut canvas, &spans, [x.label, y.label]);
-    legend(&mut canvas, curves);
+    axes(&mut canvas, &reaches, [x.label, y.label]);
+    legend(&mut canvas, [MARGIN[0] + SIZE[0] + 20, MARGIN[1]], curves);
     encode(&canvas)
 }
 
 /// What an axis shows; of decades their logarithms.
-struct Span {
+pub(super) struct Reach {
     division: Division,
     from: f64,
     to: f64,
 }
 
-impl Span {
-    fn of(division: Division, values: impl Iterator<Item = f64>) -> Span {
+impl Reach {
+    pub fn of(division: Division, values: impl Iterator<Item = f64>) -> Reach {
         let shown = values.filter_map(|value| scaled(division, value));
         let (low, high) = shown.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         let (low, high) = if low > high { (0.0, 1.0) } else { (low, high) };
         match division {
-            Division::Linear => Span { division, from: low, to: if high > low { high } else { low + 1.0 } },
+            Division::Linear => Reach { division, from: low, to: if high > low { high } else { low + 1.0 } },
             Division::Decades => {
                 let top = (high - 1e-9).ceil();
-                Span { division, from: (low + 1e-9).floor().max(top - DECADES).min(top - 1.0), to: top }
+                Reach { division, from: (low + 1e-9).floor().max(top - DECADES).min(top - 1.0), to: top }
             }
         }
     }
 
     /// Place 0..1 along the axis; `None` if it is not on it.
-    fn place(&self, value: f64) -> Option<f64> {
+    pub fn place(&self, value: f64) -> Option<f64> {
         let place = (scaled(self.division, value)? - self.from) / (self.to - self.from);
         (-1e-9..=1.0 + 1e-9).contains(&place).then_some(place)
     }
 
-    fn marks(&self, count: usize) -> Vec<(f64, String)> {
+    pub fn marks(&self, count: usize) -> Vec<(f64, String)> {
         match self.division {
             Division::Linear => ticks(self.from, self.to, count),
             Division::Decades => {
@@ -104,22 +105,7 @@ fn pixel(x: f64, y: f64) -> [f64; 2] {
     [f64::from(MARGIN[0]) + x * f64::from(SIZE[0] - 2), f64::from(MARGIN[1]) + (1.0 - y) * f64::from(SIZE[1] - 2)]
 }
 
-/// Straight lines between neighbours that are both on the axes.
-fn trace(canvas: &mut Canvas, [x, y]: &[Span; 2], points: &[[f64; 2]], colour: [u8; 3]) {
-    let place = |point: &[f64; 2]| Some(pixel(x.place(point[0])?, y.place(point[1])?));
-    let places: Vec<Option<[f64; 2]>> = points.iter().map(place).collect();
-    for pair in places.windows(2) {
-        let [Some(a), Some(b)] = [pair[0], pair[1]] else { continue };
-        let steps = (b[0] - a[0]).abs().max((b[1] - a[1]).abs()).ceil().max(1.0);
-        for step in 0..=steps as i32 {
-            let part = f64::from(step) / steps;
-            let at = [0, 1].map(|axis| (a[axis] + part * (b[axis] - a[axis])).round() as i32);
-            canvas.fill(at, [2, 2], colour);
-        }
-    }
-}
-
-fn axes(canvas: &mut Canvas, [x, y]: &[Span; 2], labels: [&str; 2]) {
+fn axes(canvas: &mut Canvas, [x, y]: &[Reach; 2], labels: [&str; 2]) {
     let (left, bottom) = (MARGIN[0], MARGIN[1] + SIZE[1]);
     for (place, text) in x.marks(8) {
         let at = pixel(place, 0.0)[0].round() as i32;
@@ -137,13 +123,18 @@ fn axes(canvas: &mut Canvas, [x, y]: &[Span; 2], labels: [&str; 2]) {
     canvas.upward([left - 12 - widest - 16, MARGIN[1] + SIZE[1] / 2], Anchor::Middle, labels[1]);
 }
 
-fn legend(canvas: &mut Canvas, curves: &[Curve]) {
-    let left = MARGIN[0] + SIZE[0] + 20;
-    for (row, (curve, colour)) in curves.iter().zip(COLOURS.iter().cycle()).enumerate() {
-        let y = MARGIN[1] + 12 + row as i32 * (LETTER[1] + 6);
-        canvas.fill([left, y - 1], [24, 3], *colour);
+/// Names of curves beside their colours, from a place down.
+pub(super) fn legend(canvas: &mut Canvas, [left, top]: [i32; 2], curves: &[Curve]) {
+    for (row, (curve, colour)) in curves.iter().zip(colours()).enumerate() {
+        let y = top + 12 + row as i32 * (LETTER[1] + 6);
+        canvas.fill([left, y - 1], [24, 3], colour);
         canvas.text([left + 32, y], Anchor::Start, Weight::Regular, &curve.label);
     }
+}
+
+/// Colours of curves in their order.
+pub(super) fn colours() -> impl Iterator<Item = [u8; 3]> {
+    COLOURS.into_iter().cycle()
 }
 
 #[cfg(test)]
@@ -152,11 +143,11 @@ mod tests {
 
     #[test]
     fn decades_are_whole_and_hold_all_values() {
-        let span = Span::of(Division::Decades, [3e-5, 0.0, 0.2, f64::NAN].into_iter());
+        let span = Reach::of(Division::Decades, [3e-5, 0.0, 0.2, f64::NAN].into_iter());
         assert_eq!((span.from, span.to), (-5.0, 0.0));
         assert_eq!(span.place(0.0), None);
         assert_eq!(span.marks(7).last().map(|mark| mark.1.clone()), Some("1e0".into()));
-        let one = Span::of(Division::Decades, [1e-3].into_iter());
+        let one = Reach::of(Division::Decades, [1e-3].into_iter());
         assert!(one.place(1e-3).is_some());
     }
 

@@ -105,19 +105,10 @@ fn line(canvas: &mut Canvas, from: [f64; 2], to: [f64; 2], ink: Ink, stroke: Str
         Ink::Blue => [0x1c, 0x5f, 0xc4],
         Ink::Grey => [0x86, 0x8e, 0x96],
     };
-    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-    let way = dx.hypot(dy);
-    let steps = (2.0 * way).ceil().max(1.0);
-    for step in 0..=steps as i32 {
-        let part = f64::from(step) / steps;
-        let gap = stroke == Stroke::Dashed && (*run + part * way).rem_euclid(12.0) > 7.0;
-        if !gap {
-            let [x, y] = [(from[0] + part * dx).round() as i32, (from[1] + part * dy).round() as i32];
-            let thick = if stroke == Stroke::Bold { 3 } else { 1 };
-            canvas.fill([x - thick / 2, y - thick / 2], [thick, thick], colour);
-        }
-    }
-    *run += way;
+    let start = *run;
+    let inked = |way: f64| stroke != Stroke::Dashed || (start + way).rem_euclid(12.0) <= 7.0;
+    canvas.line([from, to], if stroke == Stroke::Bold { 3 } else { 1 }, colour, inked);
+    *run += (to[0] - from[0]).hypot(to[1] - from[1]);
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod chart;
 mod curves;
 mod field;
 mod plot;
+mod polar;
 mod scale;
 
 pub use axis::{Span, superscript, ticks};
@@ -13,4 +14,5 @@ pub use chart::{Curve, Division, Ruler, chart};
 pub use curves::{Ink, Line, Panel, Stroke, curves};
 pub use field::{Cell, Field};
 pub use plot::{bare, png};
+pub use polar::polar;
 pub use scale::{Mark, Palette, Scale};

@@ -149,7 +149,8 @@ mod tests {
         for row in 0..cells * fine {
             for column in 0..cells * fine {
                 let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5) * step;
-                expected[row / fine * cells + column / fine] += directions.density(direction(at)) * 4.0 * PI * step * step;
+                expected[row / fine * cells + column / fine] +=
+                    directions.density(direction(at)) * 4.0 * PI * step * step;
             }
         }
         assert!((expected.iter().sum::<f64>() - 1.0).abs() < 1e-9);

@@ -27,13 +27,7 @@ const MOST_LOOKS: u64 = 1 << 14;
 const BRANCHES: f64 = 1.0;
 
 /// What a run needs to know of importance, by random numbers of its own. Does not depend on the number of threads.
-pub fn learn(
-    scene: &Scene,
-    settings: &Settings,
-    quotas: &[Quota],
-    batch_rays: u64,
-    stop: &AtomicBool,
-) -> Importance {
+pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u64, stop: &AtomicBool) -> Importance {
     let declared = Importance::declared(scene);
     let settings = &Settings {
         seed: mix(settings.seed ^ 0x696d_706f_7274),

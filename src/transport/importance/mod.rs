@@ -156,6 +156,11 @@ impl Importance {
             return Advice::PLAIN;
         }
         views.iter_mut().for_each(|(share, _)| *share *= others / sum);
-        Advice { branches: 1.0, lobes, views, learned: learned.map(|(wish, directions)| (others * wish / sum, directions)) }
+        Advice {
+            branches: 1.0,
+            lobes,
+            views,
+            learned: learned.map(|(wish, directions)| (others * wish / sum, directions)),
+        }
     }
 }

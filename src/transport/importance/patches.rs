@@ -38,7 +38,11 @@ const NOWHERE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 enum Node {
     /// Below the plane, and not.
-    Plane { axis: u8, at: f64, below: [u32; 2] },
+    Plane {
+        axis: u8,
+        at: f64,
+        below: [u32; 2],
+    },
     Patch(u32),
 }
 
