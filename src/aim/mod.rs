@@ -7,9 +7,9 @@ pub mod rectangle;
 
 use crate::geometry::Frame;
 use crate::math::Rng;
-use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
 use rectangle::Rectangle;
+use smallvec::SmallVec;
 
 /// A box to aim at; flat if one of its sides is zero.
 #[derive(Clone, Debug)]
@@ -25,9 +25,8 @@ pub struct Target {
 /// The faces of a target that a point sees.
 #[derive(Clone, Debug)]
 pub struct View {
-    faces: ArrayVec<Rectangle, 3>,
-    /// Solid angle of each, sr; estimated where small: the share of draws that it gets.
-    shares: ArrayVec<f64, 3>,
+    /// With the solid angle of each, sr; estimated where small: the share of draws that it gets.
+    faces: SmallVec<[(Rectangle, f64); 1]>,
     whole: f64,
 }
 
@@ -44,7 +43,7 @@ impl Target {
     pub fn seen(&self, point: DVec3) -> Option<View> {
         let away = self.frame.to_local(point - self.centre);
         let axes = [self.frame.x, self.frame.y, self.frame.z];
-        let mut view = View { faces: ArrayVec::new(), shares: ArrayVec::new(), whole: 0.0 };
+        let mut view = View { faces: SmallVec::new(), whole: 0.0 };
         for axis in 0..3 {
             if away[axis].abs() <= self.half[axis] {
                 continue;
@@ -56,8 +55,7 @@ impl Target {
             let Some(face) = Rectangle::seen(&frame, centre - point, half) else { continue };
             let share = face.solid_angle();
             view.whole += share;
-            view.faces.push(face);
-            view.shares.push(share);
+            view.faces.push((face, share));
         }
         (view.whole > 0.0).then_some(view)
     }
@@ -67,17 +65,16 @@ impl View {
     /// A unit direction through the target.
     pub fn draw(&self, rng: &mut Rng) -> DVec3 {
         let mut rest = if self.faces.len() == 1 { 0.0 } else { rng.uniform() * self.whole };
-        let chosen = self.shares.iter().position(|share| {
+        let chosen = self.faces.iter().position(|(_, share)| {
             rest -= share;
             rest < 0.0
         });
-        self.faces[chosen.unwrap_or(self.faces.len() - 1)].draw(rng.pair())
+        self.faces[chosen.unwrap_or(self.faces.len() - 1)].0.draw(rng.pair())
     }
 
     /// Density of `draw` at a unit direction, 1/sr.
     pub fn density(&self, direction: DVec3) -> f64 {
-        let parts = self.faces.iter().zip(&self.shares);
-        parts.map(|(face, share)| share / self.whole * face.density(direction)).sum()
+        self.faces.iter().map(|(face, share)| share / self.whole * face.density(direction)).sum()
     }
 
     /// Solid angle, sr; estimated where small.

@@ -50,9 +50,17 @@ pub fn plan<'a, const V: usize, W: Watch>(
         broad,
         opaque: surface.opaque(),
     };
-    let advice = importance.advise(walk.scene, &occasion);
+    let mut advice = importance.advise(walk.scene, &occasion);
     if advice.is_plain() {
         return Plan { branches: 1, advice, factor, level: 0.0, turn: 0.0 };
+    }
+    if importance.map.is_some() && advice.lobes < 1.0 {
+        let turn = advice.lobes + (1.0 - advice.lobes) * packet.rng.uniform();
+        if let Some(world) = advice.aim(turn, &mut packet.rng) {
+            let lobes = surface.weigh(&meeting.at[0], &meeting.shares[0], meeting.frame.to_local(world)).density;
+            let aimed = advice.density(world, 0.0) / (1.0 - advice.lobes);
+            advice.balance(lobes, aimed);
+        }
     }
     let (whole, part) = (advice.branches.floor(), advice.branches.fract());
     let branches = whole + (part > 0.0 && packet.rng.uniform() < part) as u8 as f64;
@@ -77,15 +85,16 @@ pub fn scatter<const V: usize, W: Watch>(
         let address = mix((child.ancestry.events as u64) << 32 | (branch as u64) << 2 | 3);
         child.ancestry.branch = mix(child.ancestry.branch ^ address);
         child.rng = Rng::new(walk.seed, child.ancestry.history, child.ancestry.branch);
-        if one(&mut child, crossing, meeting, bill, plan, branch) {
+        if one(walk, &mut child, crossing, meeting, bill, plan, branch) {
             walk.waiting.push(child);
         }
     }
-    one(packet, crossing, meeting, bill, plan, 0)
+    one(walk, packet, crossing, meeting, bill, plan, 0)
 }
 
 /// Turns `packet` into branch `branch`; false if it carries nothing.
-fn one<const V: usize>(
+fn one<const V: usize, W: Watch>(
+    walk: &mut Walk<V, W>,
     packet: &mut Packet<V>,
     crossing: &Crossing,
     meeting: &Meeting<V>,
@@ -114,10 +123,32 @@ fn one<const V: usize>(
         let flux = alive * packet.light[l].i * weighed.value / density;
         packet.light[l] = Stokes::unpolarised(flux * plan.factor);
     }
+    if !plan.advice.is_plain() && !survives(walk, packet, plan, wo.z.abs(), [density, lobes]) {
+        return false;
+    }
     packet.level = if aimed { plan.level } else { 0.0 };
     depart(packet, crossing, meeting, wo, Event::Scatter);
     packet.transverse = Frame::from_z(packet.ray.direction).x;
     true
+}
+
+/// Draws for a branch whose flux is worth less than a whole one; false if it ends. The mean is unchanged.
+fn survives<const V: usize, W: Watch>(
+    walk: &mut Walk<V, W>,
+    packet: &mut Packet<V>,
+    plan: &Plan,
+    cosine: f64,
+    densities: [f64; 2],
+) -> bool {
+    let chance = plan.advice.survival(packet.flux(), cosine, densities, walk.start);
+    if chance >= 1.0 {
+        return true;
+    }
+    let alive = packet.rng.uniform() < chance;
+    let kept = if alive { 1.0 / chance } else { 0.0 };
+    walk.book.cut(Cut::Roulette, packet.fluxes().map(|flux| flux * (1.0 - kept)));
+    packet.light = packet.light.map(|light| light * kept);
+    alive
 }
 
 /// A lane in proportion to what it scatters.

@@ -5,26 +5,31 @@ use super::scout::{Scout, Sighting, Way, shining, wavelength};
 use super::{Importance, Map};
 use crate::math::Rng;
 use crate::math::rng::mix;
+use crate::packet::Ancestry;
 use crate::scene::Scene;
 use crate::settings::{Roulette, Settings};
+use crate::source::Source;
 use crate::tally::{Layout, Live};
 use crate::transport::book::Book;
 use crate::transport::paths::Rows;
 use crate::transport::walk::{Quota, Walk};
 use crate::transport::watch::{Sight, Watch};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Part of the run's rays that scouts may be, all detectors together, and their most.
-const SCOUTS: u64 = 16;
-const MOST_SCOUTS: u64 = 1 << 18;
+/// Part of the run's flights that scouts may take, all detectors together; least and most.
+const SCOUTED: f64 = 0.1;
+const FLIGHTS: [f64; 2] = [65_536.0, 2_097_152.0];
 /// Scouts of one task.
 const TROOP: u64 = 512;
+/// Tasks that tell how far scouts go.
+const VANGUARD: u64 = 4;
 /// Part of the run's rays that look where light comes to, and their most.
 const LOOKS: u64 = 64;
 const MOST_LOOKS: u64 = 1 << 14;
 /// Branches of a source ray that the map is scaled for.
-const BRANCHES: f64 = 1.0;
+const BRANCHES: f64 = 8.0;
 
 /// What a run needs to know of importance, by random numbers of its own. Does not depend on the number of threads.
 pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u64, stop: &AtomicBool) -> Importance {
@@ -35,10 +40,12 @@ pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u
         ..settings.clone()
     };
     let teacher = Teacher { scene, settings, declared: &declared, layout: scene.layout(0), stop };
-    let visits = teacher.visits(quotas, batch_rays);
+    let (visits, flights) = teacher.visits(quotas, batch_rays);
+    let rays = looks(settings, batch_rays) * batch_rays;
+    let flights = (SCOUTED * flights as f64 / rays as f64 * settings.rays as f64).clamp(FLIGHTS[0], FLIGHTS[1]);
     let mut sightings = Vec::new();
     for detector in 0..scene.detectors.len() {
-        let mut own = teacher.scouts(detector);
+        let mut own = teacher.scouts(detector, flights / scene.detectors.len() as f64);
         if scene.detectors.len() > 1 {
             // Every detector is to be known equally well: its sightings count by how much light it will get.
             let alone = Patches::learn(scene, &own, &mut Vec::new());
@@ -51,7 +58,6 @@ pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u
     let mut targets = declared.targets.clone();
     let patches = Patches::learn(scene, &sightings, &mut targets);
     let whole: f64 = visits.iter().map(|visit| visit.worth(&patches)).sum();
-    let rays = looks(settings, batch_rays) * batch_rays;
     let branch = whole / (BRANCHES * rays as f64);
     Importance { targets, map: (branch > 0.0).then_some(Map { patches, branch }) }
 }
@@ -70,65 +76,73 @@ struct Teacher<'a> {
 }
 
 impl Teacher<'_> {
-    /// First scatter events of source rays.
-    fn visits(&self, quotas: &[Quota], batch_rays: u64) -> Vec<Visit> {
+    /// First scatter events of source rays, and the flights of these.
+    fn visits(&self, quotas: &[Quota], batch_rays: u64) -> (Vec<Visit>, u64) {
         let trace = |batch: u64| {
             let watch = Visits { fresh: true, list: Vec::new() };
-            self.walk(watch, |walk| walk.batch(batch, quotas)).list
+            let (watch, flights) = self.walk(watch, |walk| walk.batch(batch, quotas));
+            (watch.list, flights)
         };
-        (0..looks(self.settings, batch_rays)).into_par_iter().flat_map_iter(trace).collect()
+        together((0..looks(self.settings, batch_rays)).into_par_iter().map(trace).collect())
     }
 
-    /// Where scouts of a detector come to.
-    fn scouts(&self, detector: usize) -> Vec<Sighting> {
+    /// Where scouts of a detector come to, that fly about `flights` times in all. They weigh as if there were one.
+    fn scouts(&self, detector: usize, flights: f64) -> Vec<Sighting> {
         let sources = shining(self.scene, detector);
         if sources.is_empty() {
             return Vec::new();
         }
-        let all = (self.settings.rays / SCOUTS).clamp(TROOP, MOST_SCOUTS) / self.scene.detectors.len() as u64;
-        let each = all.div_ceil(sources.len() as u64);
-        let troop = |troop: u64| {
-            let scout = Scout {
-                scene: self.scene,
-                detector: detector as u16,
-                way: Way::Straight(detector as u16),
-                sightings: Vec::new(),
-            };
-            let sources = &sources;
-            self.walk(scout, move |walk| {
-                for number in TROOP * troop..(TROOP * (troop + 1)).min(each) {
-                    for (side, source) in sources.iter().enumerate() {
-                        let address = (detector as u64) << 32 | number;
-                        let mut rng = Rng::new(mix(walk.seed ^ (side as u64 + 1)), address, 0);
-                        let mut birth = source.emit(&mut |_| rng.uniform());
-                        birth.wavelength = wavelength(walk.scene, &mut rng);
-                        let mut packet = walk.born(source, (0, address), birth, source.flux / each as f64, rng);
-                        walk.history(&mut packet);
-                    }
-                }
-            })
-            .sightings
-        };
-        (0..each.div_ceil(TROOP)).into_par_iter().flat_map_iter(troop).collect()
+        let troop = |number: u64| self.troop(detector, &sources, number);
+        let (mut all, vanguard) = together((0..VANGUARD).into_par_iter().map(troop).collect());
+        let troops = (flights * VANGUARD as f64 / vanguard.max(1) as f64) as u64;
+        let (others, _) = together((VANGUARD..troops).into_par_iter().map(troop).collect());
+        all.extend(others);
+        let scouts = (TROOP * troops.max(VANGUARD)) as f64;
+        all.iter_mut().for_each(|sighting| sighting.weight /= scouts);
+        all
     }
 
-    /// Lets a watched walk happen; returns the watch.
-    fn walk<W: Watch>(&self, watch: W, trace: impl FnOnce(&mut Walk<1, W>)) -> W {
+    /// The scouts of one task and their flights.
+    fn troop(&self, detector: usize, sources: &[Source], number: u64) -> (Vec<Sighting>, u64) {
+        let way = Way::Straight(detector as u16);
+        let scout = Scout { scene: self.scene, detector: detector as u16, way, sightings: Vec::new() };
+        let (scout, flights) = self.walk(scout, |walk| {
+            for scout in TROOP * number..TROOP * (number + 1) {
+                let address = (detector as u64) << 32 | scout;
+                let mut rng = Rng::new(walk.seed, address, 0);
+                let source = &sources[scout as usize % sources.len()];
+                let mut birth = source.emit(&mut |_| rng.uniform());
+                birth.wavelength = wavelength(walk.scene, &mut rng);
+                let mut packet = walk.born(source, (0, address), birth, source.flux * sources.len() as f64, rng);
+                walk.history(&mut packet);
+            }
+        });
+        (scout.sightings, flights)
+    }
+
+    /// Lets a watched walk happen; returns the watch, and the flights.
+    fn walk<W: Watch>(&self, watch: W, trace: impl FnOnce(&mut Walk<1, W>)) -> (W, u64) {
         let rows = Rows::default();
         let book = Book::<1>::new(&self.layout, Live::new(self.layout.len()), Some(&rows));
         let mut walk = Walk::new(self.scene, self.settings, self.declared, book, watch);
         if !self.stop.load(Ordering::Relaxed) {
             trace(&mut walk);
         }
-        walk.watch
+        (walk.watch, walk.book.segments)
     }
+}
+
+/// Lists one after the other, and the sum of what is counted beside.
+fn together<T>(parts: Vec<(Vec<T>, u64)>) -> (Vec<T>, u64) {
+    let count = parts.iter().map(|part| part.1).sum();
+    (parts.into_iter().flat_map(|part| part.0).collect(), count)
 }
 
 /// Light scattered for the first time.
 struct Visit {
     part: u32,
     front: bool,
-    point: glam::DVec3,
+    point: DVec3,
     /// W
     flux: f64,
 }
@@ -147,7 +161,7 @@ struct Visits {
 }
 
 impl Watch for Visits {
-    fn follows(&mut self, ancestry: &crate::packet::Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry) {
         self.fresh = ancestry.scatters == 0;
     }
 

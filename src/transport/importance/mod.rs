@@ -21,18 +21,23 @@ use directions::Directions;
 use glam::DVec3;
 pub use learn::learn;
 use patches::{MOST_TARGETS, Patches};
+use std::f64::consts::PI;
 
-/// Shares of the draws that lobes keep and that are aimed, where lobes are broad and where they are narrow.
-const BROAD: [f64; 2] = [0.25, 0.75];
-const NARROW: [f64; 2] = [0.5, 0.5];
+/// Share of the draws that lobes keep, where they are broad and where they are narrow.
+const BROAD: f64 = 0.15;
+const NARROW: f64 = 0.5;
+/// Their largest share.
+const MOST_LOBES: f64 = 0.9;
 /// Wish for a target that the system declares, beside all that was found, which is 1.
 const DECLARED: f64 = 0.3;
-/// Least mean number of branches where no scout has been.
+/// Share of the worth of a patch that may lie in any direction, whatever was learned.
+const ANYWHERE: f64 = 0.05;
+/// Least chance of a branch to live where no scout has been.
 const UNSEEN: f64 = 0.1;
 /// Most branches of one scatter event.
-const MOST_BRANCHES: f64 = 16.0;
+const MOST_BRANCHES: f64 = 64.0;
 /// Targets that one mixture can hold: those of the system and those of the map.
-const MOST_VIEWS: usize = 2 * MOST_TARGETS;
+const MOST_VIEWS: usize = MOST_TARGETS + 1;
 
 /// What is known before the run.
 #[derive(Debug, Default)]
@@ -74,15 +79,18 @@ pub struct Advice<'a> {
     pub lobes: f64,
     views: ArrayVec<(f64, View), MOST_VIEWS>,
     learned: Option<(f64, &'a Directions)>,
+    /// What a watt that is scattered evenly is worth, in branches; `None`: every branch lives.
+    worth: Option<f64>,
 }
 
 impl Advice<'_> {
     /// One branch from the lobes.
-    const PLAIN: Advice<'static> = Advice { branches: 1.0, lobes: 1.0, views: ArrayVec::new_const(), learned: None };
+    const PLAIN: Advice<'static> =
+        Advice { branches: 1.0, lobes: 1.0, views: ArrayVec::new_const(), learned: None, worth: None };
 
     /// True if nothing but the lobes of the surface is to be drawn from, once.
     pub fn is_plain(&self) -> bool {
-        self.lobes == 1.0 && self.branches == 1.0
+        self.lobes == 1.0 && self.branches == 1.0 && self.worth.is_none()
     }
 
     /// A unit direction from what `turn`, in lobes..1, falls to.
@@ -106,6 +114,27 @@ impl Advice<'_> {
         let learned = self.learned.map_or(0.0, |(share, directions)| share * directions.density(direction));
         self.lobes * lobes + views + learned
     }
+
+    /// Gives the lobes the share that they are worth: `lobes` is their density at a direction that was aimed, and `aimed` the
+    /// density with which.
+    pub fn balance(&mut self, lobes: f64, aimed: f64) {
+        let share = (lobes / (lobes + aimed)).clamp(self.lobes, MOST_LOBES);
+        let others = (1.0 - share) / (1.0 - self.lobes);
+        self.lobes = share;
+        self.views.iter_mut().for_each(|(share, _)| *share *= others);
+        self.learned = self.learned.map(|(share, directions)| (share * others, directions));
+    }
+
+    /// The chance of a branch to live, that carries `flux` (W) off at an angle with this cosine to the normal; the mixture has
+    /// density `mixed` there and the lobes `lobes` (1/sr). `start`: most that it may carry then, W.
+    pub fn survival(&self, flux: f64, cosine: f64, [mixed, lobes]: [f64; 2], start: f64) -> f64 {
+        let Some(worth) = self.worth else { return 1.0 };
+        // I(w) = W q(w) / cos, where W = pi M and q is the density that was learned.
+        let learned = if self.lobes < 1.0 { (mixed - self.lobes * lobes).max(0.0) / (1.0 - self.lobes) } else { 0.0 };
+        let towards = PI * (1.0 - ANYWHERE) * learned / cosine + ANYWHERE;
+        let least = if worth > 0.0 { 0.0 } else { UNSEEN };
+        (flux * worth * towards).max(flux / start).max(least).min(1.0)
+    }
 }
 
 impl Importance {
@@ -122,30 +151,30 @@ impl Importance {
             if declared.is_empty() {
                 return Advice::PLAIN;
             }
-            let advice = self.mixed(occasion.point, [0.5, 0.5], declared.iter().map(|&target| (1.0, target)), None);
+            let advice = self.mixed(occasion.point, 0.5, declared.iter().map(|&target| (1.0, target)), None);
             let both = if advice.lobes < 1.0 { 2.0 } else { 1.0 };
             return Advice { branches: both * (occasion.flux / occasion.level).min(1.0), ..advice };
         };
         let patch = map.patches.at(occasion.part, occasion.front, occasion.point).filter(|_| occasion.opaque);
-        let worth = patch.map_or(0.0, |patch| occasion.flux * patch.worth / map.branch);
+        let worth = patch.map_or(0.0, |patch| patch.worth / map.branch);
         let branches = match (occasion.opaque, occasion.broad) {
-            // What no scout has seen may still count.
-            (true, true) => worth.clamp(whole.max(if patch.is_some() { 0.0 } else { UNSEEN }), MOST_BRANCHES),
-            (true, false) => 1.0 + whole,
+            (true, true) => (occasion.flux * worth).clamp(1.0, MOST_BRANCHES),
+            (true, false) => (occasion.flux * worth).clamp(1.0 + whole, MOST_BRANCHES),
             (false, _) => 1.0,
         };
-        let shares = if occasion.broad { BROAD } else { NARROW };
+        let lobes = if occasion.broad { BROAD } else { NARROW };
         let found = patch.into_iter().flat_map(|patch| patch.targets.iter().map(|&(target, share)| (share, target)));
         let wishes = declared.iter().map(|&target| (DECLARED, target)).chain(found);
         let learned = patch.and_then(|patch| patch.rest.as_ref()).map(|(share, directions)| (*share, directions));
-        Advice { branches, ..self.mixed(occasion.point, shares, wishes, learned) }
+        let worth = (occasion.opaque && occasion.broad).then_some(worth);
+        Advice { branches, worth, ..self.mixed(occasion.point, lobes, wishes, learned) }
     }
 
-    /// A mixture of lobes, the targets that are in sight, and what was learned: `[lobes, others]` share the draws.
+    /// A mixture of lobes, the targets that are in sight, and what was learned; the lobes have the share `lobes` of the draws.
     fn mixed<'a>(
         &'a self,
         point: DVec3,
-        [lobes, others]: [f64; 2],
+        lobes: f64,
         wishes: impl Iterator<Item = (f64, u16)>,
         learned: Option<(f64, &'a Directions)>,
     ) -> Advice<'a> {
@@ -155,12 +184,9 @@ impl Importance {
         if sum <= 0.0 {
             return Advice::PLAIN;
         }
+        let others = 1.0 - lobes;
         views.iter_mut().for_each(|(share, _)| *share *= others / sum);
-        Advice {
-            branches: 1.0,
-            lobes,
-            views,
-            learned: learned.map(|(wish, directions)| (others * wish / sum, directions)),
-        }
+        let learned = learned.map(|(wish, directions)| (others * wish / sum, directions));
+        Advice { lobes, views, learned, ..Advice::PLAIN }
     }
 }
