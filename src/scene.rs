@@ -127,6 +127,12 @@ impl Scene {
         &self.surfaces[side[!hit.front as usize] as usize]
     }
 
+    /// Whether a side of a part scatters, in the first variant.
+    pub fn scatters(&self, part: u32, front: bool) -> bool {
+        let surface = self.parts[part as usize].surface[0][!front as usize];
+        !self.surfaces[surface as usize].lobes.is_empty()
+    }
+
     /// One event out of all faces that lie on each other at a crossing: media before and after, and the face whose
     /// surface acts. An opaque face acts first, then the one with a finish of its own, then the nearest; the two faces of
     /// a solid that is entered and left again within the rounding of its corners are not there.

@@ -42,6 +42,8 @@ pub struct Source {
 #[derive(Clone, Debug)]
 pub struct Birth {
     pub ray: Ray,
+    /// Unit normal of the place it starts from, on the side that shines.
+    pub normal: DVec3,
     /// Triangle and side it starts from, if any.
     pub from: Option<(u32, bool)>,
     /// Vacuum wavelength, m.
@@ -63,6 +65,7 @@ impl Source {
         let transverse = Frame::from_z_x(direction, self.polarization.reference).x;
         Birth {
             ray: Ray { origin: spot.point, direction },
+            normal: spot.frame.z,
             from: spot.triangle,
             wavelength: match self.spectrum {
                 Spectrum::Line(wavelength) => wavelength,

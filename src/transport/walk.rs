@@ -238,6 +238,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                 here.light = here.light.map(|light| light * left);
             }
             let arrival = Arrival { point, direction: packet.ray.direction, triangle: None };
+            self.watch.arrives(detector, packet.ray.direction, here.flux());
             self.book.arrived(self.scene, detector, &here, &arrival);
         }
     }
@@ -252,6 +253,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                         direction: packet.ray.direction,
                         triangle: Some(hit.triangle),
                     };
+                    self.watch.arrives(detector as usize, packet.ray.direction, packet.flux());
                     self.book.arrived(self.scene, detector as usize, packet, &arrival);
                 }
             }

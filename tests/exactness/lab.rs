@@ -129,7 +129,7 @@ pub fn shot(compiled: &Compiled, rays: &[Ray]) -> Trace {
         for (history, ray) in rays.iter().enumerate() {
             let ray = Ray { origin: ray.origin - compiled.scene.shift, ..*ray };
             let transverse = ray.direction.any_orthonormal_vector();
-            let birth = Birth { ray, from: None, wavelength: 550e-9, transverse };
+            let birth = Birth { ray, normal: ray.direction, from: None, wavelength: 550e-9, transverse };
             let rng = straylight::math::Rng::new(1, history as u64, 0);
             let mut packet = walk.born(&compiled.scene.sources[0], (0, history as u64), birth, 1.0, rng);
             walk.history(&mut packet);
@@ -141,7 +141,13 @@ pub fn shot(compiled: &Compiled, rays: &[Ray]) -> Trace {
 pub fn shot_at(compiled: &Compiled, ray: Ray, wavelength: f64) -> Trace {
     follow(compiled, |walk| {
         let ray = Ray { origin: ray.origin - compiled.scene.shift, ..ray };
-        let birth = Birth { ray, from: None, wavelength, transverse: ray.direction.any_orthonormal_vector() };
+        let birth = Birth {
+            ray,
+            normal: ray.direction,
+            from: None,
+            wavelength,
+            transverse: ray.direction.any_orthonormal_vector(),
+        };
         let mut packet = walk.born(&compiled.scene.sources[0], (0, 0), birth, 1.0, straylight::math::Rng::new(1, 0, 0));
         walk.history(&mut packet);
     })
@@ -151,7 +157,13 @@ pub fn shot_at(compiled: &Compiled, ray: Ray, wavelength: f64) -> Trace {
 pub fn shot_from(compiled: &Compiled, ray: Ray) -> Trace {
     follow(compiled, |walk| {
         let ray = Ray { origin: ray.origin - compiled.scene.shift, ..ray };
-        let birth = Birth { ray, from: None, wavelength: 550e-9, transverse: ray.direction.any_orthonormal_vector() };
+        let birth = Birth {
+            ray,
+            normal: ray.direction,
+            from: None,
+            wavelength: 550e-9,
+            transverse: ray.direction.any_orthonormal_vector(),
+        };
         let mut packet = walk.born(&compiled.scene.sources[0], (0, 0), birth, 1.0, straylight::math::Rng::new(1, 0, 0));
         packet.solids = compiled.scene.solids_at(ray.origin);
         walk.history(&mut packet);

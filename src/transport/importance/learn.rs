@@ -1,5 +1,6 @@
 //! Learning before the run: scouts from every detector, and a first look at where light comes to.
 
+use super::directions::Directions;
 use super::patches::Patches;
 use super::scout::{Scout, Sighting, Way, shining, wavelength};
 use super::{Importance, Map};
@@ -8,7 +9,7 @@ use crate::math::rng::mix;
 use crate::packet::Ancestry;
 use crate::scene::Scene;
 use crate::settings::{Roulette, Settings};
-use crate::source::Source;
+use crate::source::{Birth, Source};
 use crate::tally::{Layout, Live};
 use crate::transport::book::Book;
 use crate::transport::paths::Rows;
@@ -16,6 +17,7 @@ use crate::transport::walk::{Quota, Walk};
 use crate::transport::watch::{Sight, Watch};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Part of the run's flights that scouts may take, all detectors together; least and most.
@@ -28,103 +30,141 @@ const VANGUARD: u64 = 4;
 /// Part of the run's rays that look where light comes to, and their most.
 const LOOKS: u64 = 64;
 const MOST_LOOKS: u64 = 1 << 14;
+/// Share of the scouts that set off evenly.
+const EVENLY: f64 = 0.3;
+/// Arrivals that tell where light comes from.
+const FEWEST_ARRIVALS: usize = 16;
 /// Branches of a source ray that the map is scaled for.
-const BRANCHES: f64 = 8.0;
+const BRANCHES: f64 = 4.0;
+
+/// Shares of the scouts that go in each round; every round but the first is guided by what the one before taught.
+const ROUNDS: [f64; 3] = [0.15, 0.25, 0.6];
 
 /// What a run needs to know of importance, by random numbers of its own. Does not depend on the number of threads.
+///
+/// Light looks where it comes to; scouts then go where it is; light then goes where scouts found worth; and so on.
 pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u64, stop: &AtomicBool) -> Importance {
-    let declared = Importance::declared(scene);
     let settings = &Settings {
         seed: mix(settings.seed ^ 0x696d_706f_7274),
         roulette: Roulette { below: 1e-6, survive: 0.1 },
         ..settings.clone()
     };
-    let teacher = Teacher { scene, settings, declared: &declared, layout: scene.layout(0), stop };
-    let (visits, flights) = teacher.visits(quotas, batch_rays);
-    let rays = looks(settings, batch_rays) * batch_rays;
-    let flights = (SCOUTED * flights as f64 / rays as f64 * settings.rays as f64).clamp(FLIGHTS[0], FLIGHTS[1]);
-    let mut sightings = Vec::new();
-    for detector in 0..scene.detectors.len() {
-        let mut own = teacher.scouts(detector, flights / scene.detectors.len() as f64);
-        if scene.detectors.len() > 1 {
-            // Every detector is to be known equally well: its sightings count by how much light it will get.
-            let alone = Patches::learn(scene, &own, &mut Vec::new());
-            let flux: f64 = visits.iter().map(|visit| visit.worth(&alone)).sum();
-            own.iter_mut().for_each(|sighting| sighting.weight /= if flux > 0.0 { flux } else { f64::INFINITY });
+    let teacher = Teacher { scene, settings, quotas, batch_rays, layout: scene.layout(0), stop };
+    let declared = Importance::declared(scene);
+    let (first, flights) = teacher.light(&declared, 0);
+    let rays = (teacher.looks() * batch_rays) as f64;
+    let flights = (SCOUTED * flights as f64 / rays * settings.rays as f64).clamp(FLIGHTS[0], FLIGHTS[1]);
+    let (mut light, mut importance) = (None, declared);
+    for (round, share) in ROUNDS.into_iter().enumerate() {
+        let sightings = teacher.scouted(&first, light.as_ref().unwrap_or(&first), share * flights, round as u64);
+        let mut targets = scene.targets.clone();
+        let patches = Patches::learn(scene, &sightings, &mut targets);
+        let whole: f64 = first.visits.iter().map(|visit| visit.worth(&patches)).sum();
+        let branch = whole / (BRANCHES * rays);
+        importance = Importance { targets, map: (branch > 0.0).then_some(Map { patches, branch: Some(branch) }) };
+        if round + 1 < ROUNDS.len() {
+            light = Some(teacher.light(&importance, round as u64 + 1).0);
         }
-        sightings.extend(own);
     }
-    sightings.retain(|sighting| sighting.weight > 0.0);
-    let mut targets = declared.targets.clone();
-    let patches = Patches::learn(scene, &sightings, &mut targets);
-    let whole: f64 = visits.iter().map(|visit| visit.worth(&patches)).sum();
-    let branch = whole / (BRANCHES * rays as f64);
-    Importance { targets, map: (branch > 0.0).then_some(Map { patches, branch }) }
-}
-
-/// Batches that look where light comes to.
-fn looks(settings: &Settings, batch_rays: u64) -> u64 {
-    (settings.rays / LOOKS).clamp(256, MOST_LOOKS).div_ceil(batch_rays)
+    importance
 }
 
 struct Teacher<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
-    declared: &'a Importance,
+    quotas: &'a [Quota],
+    batch_rays: u64,
     layout: Layout,
     stop: &'a AtomicBool,
 }
 
 impl Teacher<'_> {
-    /// First scatter events of source rays, and the flights of these.
-    fn visits(&self, quotas: &[Quota], batch_rays: u64) -> (Vec<Visit>, u64) {
+    /// Batches that look where light comes to.
+    fn looks(&self) -> u64 {
+        (self.settings.rays / LOOKS).clamp(256, MOST_LOOKS).div_ceil(self.batch_rays)
+    }
+
+    /// Where light comes to that knows `importance`, and its flights.
+    fn light(&self, importance: &Importance, round: u64) -> (Light, u64) {
         let trace = |batch: u64| {
-            let watch = Visits { fresh: true, list: Vec::new() };
-            let (watch, flights) = self.walk(watch, |walk| walk.batch(batch, quotas));
-            (watch.list, flights)
+            let watch = Lantern { scene: self.scene, scatters: 0, light: Light::new(self.scene) };
+            let (watch, flights) = self.walk(importance, round << 1, watch, |walk| walk.batch(batch, self.quotas));
+            (watch.light, flights)
         };
-        together((0..looks(self.settings, batch_rays)).into_par_iter().map(trace).collect())
+        let parts: Vec<(Light, u64)> = (0..self.looks()).into_par_iter().map(trace).collect();
+        let flights = parts.iter().map(|part| part.1).sum();
+        (parts.into_iter().fold(Light::new(self.scene), |all, part| all.and(part.0)), flights)
+    }
+
+    /// What scouts of all detectors sight in about `flights` flights, that go where the light is.
+    fn scouted(&self, first: &Light, light: &Light, flights: f64, round: u64) -> Vec<Sighting> {
+        let patches = Patches::learn(self.scene, &light.sightings, &mut Vec::new());
+        let lit = Importance { targets: Vec::new(), map: Some(Map { patches, branch: None }) };
+        let detectors = self.scene.detectors.len();
+        let mut sightings = Vec::new();
+        for detector in 0..detectors {
+            let came = Directions::learn(light.arrivals[detector].iter().copied());
+            let came = came.filter(|_| light.arrivals[detector].len() >= FEWEST_ARRIVALS);
+            let troops = Troops { detector, sources: shining(self.scene, detector), lit: &lit, came, round };
+            let mut own = self.scouts(&troops, flights / detectors as f64);
+            if detectors > 1 {
+                // Every detector is to be known equally well: its sightings count by how much light it will get.
+                let alone = Patches::learn(self.scene, &own, &mut Vec::new());
+                let flux: f64 = first.visits.iter().map(|visit| visit.worth(&alone)).sum();
+                own.iter_mut().for_each(|sighting| sighting.weight /= if flux > 0.0 { flux } else { f64::INFINITY });
+            }
+            sightings.extend(own);
+        }
+        sightings.retain(|sighting| sighting.weight > 0.0);
+        sightings
     }
 
     /// Where scouts of a detector come to, that fly about `flights` times in all. They weigh as if there were one.
-    fn scouts(&self, detector: usize, flights: f64) -> Vec<Sighting> {
-        let sources = shining(self.scene, detector);
-        if sources.is_empty() {
+    fn scouts(&self, troops: &Troops, flights: f64) -> Vec<Sighting> {
+        if troops.sources.is_empty() {
             return Vec::new();
         }
-        let troop = |number: u64| self.troop(detector, &sources, number);
+        let troop = |number: u64| self.troop(troops, number);
         let (mut all, vanguard) = together((0..VANGUARD).into_par_iter().map(troop).collect());
-        let troops = (flights * VANGUARD as f64 / vanguard.max(1) as f64) as u64;
-        let (others, _) = together((VANGUARD..troops).into_par_iter().map(troop).collect());
+        let count = (flights * VANGUARD as f64 / vanguard.max(1) as f64) as u64;
+        let (others, _) = together((VANGUARD..count).into_par_iter().map(troop).collect());
         all.extend(others);
-        let scouts = (TROOP * troops.max(VANGUARD)) as f64;
+        let scouts = (TROOP * count.max(VANGUARD)) as f64;
         all.iter_mut().for_each(|sighting| sighting.weight /= scouts);
         all
     }
 
     /// The scouts of one task and their flights.
-    fn troop(&self, detector: usize, sources: &[Source], number: u64) -> (Vec<Sighting>, u64) {
-        let way = Way::Straight(detector as u16);
-        let scout = Scout { scene: self.scene, detector: detector as u16, way, sightings: Vec::new() };
-        let (scout, flights) = self.walk(scout, |walk| {
+    fn troop(&self, troops: &Troops, number: u64) -> (Vec<Sighting>, u64) {
+        let detector = troops.detector as u16;
+        let scout = Scout { scene: self.scene, detector, way: Way::Straight(detector), sightings: Vec::new() };
+        let (scout, flights) = self.walk(troops.lit, troops.round << 1 | 1, scout, |walk| {
             for scout in TROOP * number..TROOP * (number + 1) {
                 let address = (detector as u64) << 32 | scout;
                 let mut rng = Rng::new(walk.seed, address, 0);
-                let source = &sources[scout as usize % sources.len()];
-                let mut birth = source.emit(&mut |_| rng.uniform());
+                let source = &troops.sources[scout as usize % troops.sources.len()];
+                let (mut birth, weight) = troops.birth(source, &mut rng);
                 birth.wavelength = wavelength(walk.scene, &mut rng);
-                let mut packet = walk.born(source, (0, address), birth, source.flux * sources.len() as f64, rng);
+                let flux = weight * source.flux * troops.sources.len() as f64;
+                let mut packet = walk.born(source, (0, address), birth, flux, rng);
                 walk.history(&mut packet);
             }
         });
         (scout.sightings, flights)
     }
 
-    /// Lets a watched walk happen; returns the watch, and the flights.
-    fn walk<W: Watch>(&self, watch: W, trace: impl FnOnce(&mut Walk<1, W>)) -> (W, u64) {
+    /// Lets a watched walk happen, with numbers of its own; returns the watch, and the flights.
+    fn walk<W: Watch>(
+        &self,
+        importance: &Importance,
+        stream: u64,
+        watch: W,
+        trace: impl FnOnce(&mut Walk<1, W>),
+    ) -> (W, u64) {
         let rows = Rows::default();
         let book = Book::<1>::new(&self.layout, Live::new(self.layout.len()), Some(&rows));
-        let mut walk = Walk::new(self.scene, self.settings, self.declared, book, watch);
+        let mut walk = Walk::new(self.scene, self.settings, importance, book, watch);
+        walk.seed = mix(self.settings.seed ^ mix(stream));
         if !self.stop.load(Ordering::Relaxed) {
             trace(&mut walk);
         }
@@ -132,10 +172,60 @@ impl Teacher<'_> {
     }
 }
 
+/// Scouts of one detector in one round.
+struct Troops<'a> {
+    detector: usize,
+    /// The detector, shining.
+    sources: Vec<Source>,
+    lit: &'a Importance,
+    /// Directions in which light came to the detector.
+    came: Option<Directions>,
+    round: u64,
+}
+
+impl Troops<'_> {
+    /// A scout sets off evenly in étendue, or to where light came from; and its weight.
+    fn birth(&self, source: &Source, rng: &mut Rng) -> (Birth, f64) {
+        let mut birth = source.emit(&mut |_| rng.uniform());
+        let Some(came) = &self.came else { return (birth, 1.0) };
+        // The normal of the place: what the beam of a source without an axis is about.
+        let normal = birth.normal;
+        if rng.uniform() >= EVENLY {
+            birth.ray.direction = -came.draw(rng.pair());
+        }
+        let cosine = birth.ray.direction.dot(normal);
+        let even = cosine.max(0.0) / PI;
+        (birth.clone(), even / (EVENLY * even + (1.0 - EVENLY) * came.density(-birth.ray.direction)))
+    }
+}
+
 /// Lists one after the other, and the sum of what is counted beside.
 fn together<T>(parts: Vec<(Vec<T>, u64)>) -> (Vec<T>, u64) {
     let count = parts.iter().map(|part| part.1).sum();
     (parts.into_iter().flat_map(|part| part.0).collect(), count)
+}
+
+/// Where light comes to.
+struct Light {
+    /// First scatter events.
+    visits: Vec<Visit>,
+    /// Scattered light at surfaces that scatter, and where it came from.
+    sightings: Vec<Sighting>,
+    /// Scattered light at every detector: its direction and flux, W.
+    arrivals: Vec<Vec<(DVec3, f64)>>,
+}
+
+impl Light {
+    fn new(scene: &Scene) -> Light {
+        Light { visits: Vec::new(), sightings: Vec::new(), arrivals: vec![Vec::new(); scene.detectors.len()] }
+    }
+
+    fn and(mut self, other: Light) -> Light {
+        self.visits.extend(other.visits);
+        self.sightings.extend(other.sightings);
+        self.arrivals.iter_mut().zip(other.arrivals).for_each(|(mine, others)| mine.extend(others));
+        self
+    }
 }
 
 /// Light scattered for the first time.
@@ -153,22 +243,35 @@ impl Visit {
     }
 }
 
-/// Takes down first scatter events.
-struct Visits {
-    /// The packet in hand has not been scattered.
-    fresh: bool,
-    list: Vec<Visit>,
+/// Takes down where light comes to.
+struct Lantern<'a> {
+    scene: &'a Scene,
+    /// Of the packet in hand.
+    scatters: u16,
+    light: Light,
 }
 
-impl Watch for Visits {
+impl Watch for Lantern<'_> {
     fn follows(&mut self, ancestry: &Ancestry) {
-        self.fresh = ancestry.scatters == 0;
+        self.scatters = ancestry.scatters;
     }
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
-        if self.fresh {
-            let Sight { part, front, point, flux, fractions, .. } = sight();
-            self.list.push(Visit { part, front, point, flux: flux * fractions[2] });
+        let Sight { part, front, point, flux, fractions, direction, .. } = sight();
+        if !self.scene.scatters(part, front) {
+            return;
+        }
+        if self.scatters == 0 {
+            self.light.visits.push(Visit { part, front, point, flux: flux * fractions[2] });
+        } else {
+            let way = Way::Scattered;
+            self.light.sightings.push(Sighting { part, front, point, towards: -direction, weight: flux, way });
+        }
+    }
+
+    fn arrives(&mut self, detector: usize, direction: DVec3, flux: f64) {
+        if self.scatters > 0 {
+            self.light.arrivals[detector].push((direction, flux));
         }
     }
 }

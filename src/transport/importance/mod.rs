@@ -51,8 +51,8 @@ pub struct Importance {
 #[derive(Debug)]
 pub struct Map {
     pub patches: Patches,
-    /// Worth of a whole branch.
-    pub branch: f64,
+    /// Worth of a whole branch; `None`: every packet goes on in one, whatever it is worth.
+    pub branch: Option<f64>,
 }
 
 /// A packet about to be scattered.
@@ -156,17 +156,14 @@ impl Importance {
             return Advice { branches: both * (occasion.flux / occasion.level).min(1.0), ..advice };
         };
         let patch = map.patches.at(occasion.part, occasion.front, occasion.point).filter(|_| occasion.opaque);
-        let worth = patch.map_or(0.0, |patch| patch.worth / map.branch);
-        let branches = match (occasion.opaque, occasion.broad) {
-            (true, true) => (occasion.flux * worth).clamp(1.0, MOST_BRANCHES),
-            (true, false) => (occasion.flux * worth).clamp(1.0 + whole, MOST_BRANCHES),
-            (false, _) => 1.0,
-        };
+        let worth = map.branch.filter(|_| occasion.opaque).map(|branch| patch.map_or(0.0, |p| p.worth / branch));
+        let least = if occasion.broad { 1.0 } else { 1.0 + whole };
+        let branches = worth.map_or(1.0, |worth| (occasion.flux * worth).clamp(least, MOST_BRANCHES));
         let lobes = if occasion.broad { BROAD } else { NARROW };
         let found = patch.into_iter().flat_map(|patch| patch.targets.iter().map(|&(target, share)| (share, target)));
         let wishes = declared.iter().map(|&target| (DECLARED, target)).chain(found);
         let learned = patch.and_then(|patch| patch.rest.as_ref()).map(|(share, directions)| (*share, directions));
-        let worth = (occasion.opaque && occasion.broad).then_some(worth);
+        let worth = worth.filter(|_| occasion.broad);
         Advice { branches, worth, ..self.mixed(occasion.point, lobes, wishes, learned) }
     }
 

@@ -61,8 +61,7 @@ impl Watch for Scout<'_> {
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
         let sight = sight();
-        let side = self.scene.parts[sight.part as usize].surface[0][!sight.front as usize];
-        if !self.scene.surfaces[side as usize].lobes.is_empty() {
+        if self.scene.scatters(sight.part, sight.front) {
             self.sightings.push(Sighting {
                 part: sight.part,
                 front: sight.front,
