@@ -106,6 +106,8 @@ mod tests {
         options::<Polarization>();
         options::<Handedness>();
         options::<Receiver>();
+        options::<Target>();
+        options::<Importance>();
         options::<Quantity>();
         options::<Bins>();
     }

@@ -250,7 +250,8 @@ fn part(
     };
     let surface = vec![[side(true), side(false)]];
     let air_gap = last(shop, entries, |s| s.gap) == Some(written::Gap::Air);
-    Part { label, surface, kind, detectors: Vec::new(), aims: [Vec::new(), Vec::new()], air_gap }
+    let aims = [true, false].map(|front| aims(shop, entries, front));
+    Part { label, surface, kind, detectors: Vec::new(), aims, air_gap }
 }
 
 /// What one side of a part is: its entries over each other, or the default. A side that entries leave out because they
@@ -289,6 +290,16 @@ fn finish(shop: &Shop, entries: &[u16], front: bool, transparent: bool) -> Finis
         finish.specular = Some(written::Specular::Fresnel);
     }
     finish
+}
+
+/// Numbers of the targets that one side of a part aims at.
+fn aims(shop: &Shop, entries: &[u16], front: bool) -> Vec<u16> {
+    let system = &shop.document.system;
+    let said = |entry: &&u16| acts(system.surfaces[**entry as usize].side, front);
+    let own = entries.iter().rev().filter(said).find_map(|&entry| system.surfaces[entry as usize].aim.as_ref());
+    let default = system.default.as_ref().filter(|default| acts(default.side, front)).and_then(|d| d.aim.as_ref());
+    let names = own.or(default).into_iter().flatten();
+    names.filter_map(|name| system.targets.position(name)).map(|target| target as u16).collect()
 }
 
 /// Whether an entry is about the front (`true`) or the back.

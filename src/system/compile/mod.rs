@@ -15,6 +15,7 @@ mod parts;
 mod receivers;
 mod scatter;
 mod scatterer;
+mod targets;
 pub mod understanding;
 
 use super::document::{Document, Importance};
@@ -142,6 +143,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let assigned = assign::assign(&mut shop, &mut assembly, &media, &coatings);
     exact::mason::faces(&mut shop, &mut assembly);
     let watched = receivers::detectors(&mut shop, &assembly);
+    let targets = targets::targets(&mut shop, &assembly);
     let sources = lights::sources(&mut shop, &assembly);
     coatings::ranges(&mut shop, &coatings, &sources);
     if !sources.is_empty() {
@@ -171,7 +173,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         solids: assigned.solids,
         sources,
         detectors,
-        targets: Vec::new(),
+        targets,
         shift: assembly.shift,
         has_optics,
     };

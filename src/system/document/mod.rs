@@ -24,6 +24,7 @@ mod scatter;
 mod source;
 mod stack;
 mod surface;
+mod target;
 mod tree;
 
 pub use bulk::{Bulk, OverWavelength};
@@ -42,6 +43,7 @@ pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use stack::{Layer, Thickness};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
+pub use target::Target;
 
 use crate::error::{Error, Problem, Span};
 use manuscript::Manuscript;
@@ -85,6 +87,8 @@ pub struct System {
     pub sources: Names<Source>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
+    /// What surfaces may aim at, by name.
+    pub targets: Names<Target>,
     /// How it is traced.
     pub run: Run,
 }

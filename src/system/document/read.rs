@@ -28,6 +28,7 @@ pub const SECTIONS: &[&str] = &[
     "default",
     "sources",
     "detectors",
+    "targets",
     "run",
 ];
 
@@ -74,6 +75,7 @@ impl<'a> Reader<'a> {
             default: self.single(root, "default"),
             sources: self.map(root, "sources"),
             detectors: self.map(root, "detectors"),
+            targets: self.map(root, "targets"),
             run: self.single(root, "run").unwrap_or_default(),
         };
         (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at })

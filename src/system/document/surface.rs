@@ -34,6 +34,8 @@ pub struct Surface {
     pub lay: Option<Direction>,
     /// Whether scatter is on.
     pub scattering: Option<Scattering>,
+    /// Where half of what they scatter is sent: names in `targets`.
+    pub aim: Option<Vec<String>>,
     /// Which solid wins where two overlap: the higher number.
     pub priority: Option<i32>,
     /// Media in front of and behind an open sheet, which thereby is an interface.
@@ -58,6 +60,7 @@ impl Surface {
             side: None,
             lay: None,
             scattering: None,
+            aim: None,
             priority: None,
             between: None,
             gap: None,
@@ -84,6 +87,8 @@ pub struct Finish {
     pub lay: Option<Direction>,
     /// Whether scatter is on.
     pub scattering: Option<Scattering>,
+    /// Where half of what they scatter is sent: names in `targets`.
+    pub aim: Option<Vec<String>>,
 }
 
 /// How scatter and coating share the light.

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// A cell is divided while it holds more than this share of the weight ...
-const SHARE: f64 = 0.01;
+const SHARE: f64 = 0.02;
 /// ... in at least so many samples ...
 const SAMPLES: usize = 8;
 /// ... and is not yet so deep.

@@ -35,7 +35,7 @@ const EVENLY: f64 = 0.3;
 /// Arrivals that tell where light comes from.
 const FEWEST_ARRIVALS: usize = 16;
 /// Branches of a source ray that the map is scaled for.
-const BRANCHES: f64 = 4.0;
+const BRANCHES: f64 = 8.0;
 
 /// Shares of the scouts that go in each round; every round but the first is guided by what the one before taught.
 const ROUNDS: [f64; 3] = [0.15, 0.25, 0.6];

@@ -24,7 +24,7 @@ use patches::{MOST_TARGETS, Patches};
 use std::f64::consts::PI;
 
 /// Share of the draws that lobes keep, where they are broad and where they are narrow.
-const BROAD: f64 = 0.15;
+const BROAD: f64 = 0.2;
 const NARROW: f64 = 0.5;
 /// Their largest share.
 const MOST_LOBES: f64 = 0.9;
@@ -37,7 +37,7 @@ const UNSEEN: f64 = 0.1;
 /// Most branches of one scatter event.
 const MOST_BRANCHES: f64 = 64.0;
 /// Targets that one mixture can hold: those of the system and those of the map.
-const MOST_VIEWS: usize = MOST_TARGETS + 1;
+const MOST_VIEWS: usize = MOST_TARGETS + 4;
 
 /// What is known before the run.
 #[derive(Debug, Default)]

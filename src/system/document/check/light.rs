@@ -1,8 +1,8 @@
-//! Checks of sources and detectors.
+//! Checks of sources, detectors and targets.
 
 use super::Checker;
 use crate::error::Problem;
-use crate::system::document::{Angular, Detector, Extent, Quantity, Receiver, Source, Spectrum};
+use crate::system::document::{Angular, Detector, Extent, Quantity, Receiver, Source, Spectrum, Target};
 use crate::system::units::{Direction, Wavelength};
 
 /// Most bins of one map: 8 arrays of doubles of this size fill 4 GiB.
@@ -205,6 +205,24 @@ impl Checker<'_> {
             let path = format!("detectors[{name:?}]");
             self.receiver(&detector.on, &format!("{path}.on"));
             self.map(detector, &path);
+        }
+    }
+
+    pub(super) fn targets(&mut self) {
+        let document = self.document;
+        for (name, target) in document.system.targets.iter() {
+            let path = format!("targets[{name:?}]");
+            match target {
+                Target::Node(glob) => self.not_empty(glob, &path, "the name of the node"),
+                Target::Rectangle { at: _, normal, x, width, height } => {
+                    self.positive(width.0, &format!("{path}.width"));
+                    self.positive(height.0, &format!("{path}.height"));
+                    if let Some(x) = x {
+                        self.not_parallel(*normal, *x, &format!("{path}.x"), "normal");
+                    }
+                }
+                Target::Disk { at: _, normal: _, radius } => self.positive(radius.0, &format!("{path}.radius")),
+            }
         }
     }
 

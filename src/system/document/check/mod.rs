@@ -29,6 +29,7 @@ enum Section {
     Coatings,
     Scatter,
     Detectors,
+    Targets,
 }
 
 impl Section {
@@ -38,6 +39,7 @@ impl Section {
             Section::Coatings => "coatings",
             Section::Scatter => "scatter",
             Section::Detectors => "detectors",
+            Section::Targets => "targets",
         }
     }
 
@@ -47,6 +49,7 @@ impl Section {
             Section::Coatings => "coating",
             Section::Scatter => "scatter model",
             Section::Detectors => "detector",
+            Section::Targets => "target",
         }
     }
 }
@@ -71,6 +74,7 @@ impl Document {
         checker.surfaces();
         checker.sources();
         checker.detectors();
+        checker.targets();
         checker.run(&self.system.run);
         if sound && !checker.problems.iter().any(Problem::is_error) {
             checker.unused();
@@ -212,7 +216,7 @@ impl<'a> Checker<'a> {
 
     /// Definitions that nothing refers to.
     fn unused(&mut self) {
-        for section in [Section::Media, Section::Coatings, Section::Scatter] {
+        for section in [Section::Media, Section::Coatings, Section::Scatter, Section::Targets] {
             for name in self.defined(section.name()) {
                 self.require(self.used.contains(&(section, name)), &format!("{}[{name:?}]", section.name()), || {
                     Problem::warning(format!("{} {name:?} is never used", section.noun()))

@@ -6,6 +6,9 @@ use crate::medium::catalog::Shelf;
 use crate::system::document::{ExtrasValue, Finish, Medium, Predicate, Scattering, Selector, Specular, Surface};
 use std::path::Path;
 
+/// Most targets that a surface may aim at.
+const MOST_AIMS: usize = 4;
+
 impl<'a> Checker<'a> {
     pub(super) fn media(&mut self) {
         let document = self.document;
@@ -95,12 +98,14 @@ impl<'a> Checker<'a> {
 
     fn finish(&mut self, finish: &'a Finish, path: &str) {
         self.specular(finish.specular, finish.coating.as_deref(), path);
+        self.aim(finish.aim.as_deref(), path);
         self.scattering(finish.scatter.as_deref(), finish.scattering, path);
     }
 
     fn surface(&mut self, surface: &'a Surface, path: &str) {
         self.specular(surface.specular, surface.coating.as_deref(), path);
         self.scattering(surface.scatter.as_deref(), surface.scattering, path);
+        self.aim(surface.aim.as_deref(), path);
         if let Some(medium) = &surface.medium {
             self.refer(Section::Media, medium, &format!("{path}.medium"));
         }
@@ -115,6 +120,12 @@ impl<'a> Checker<'a> {
         self.require(*surface != Surface::new(surface.on.clone()), path, || {
             Problem::warning("this entry says nothing about the surfaces it selects")
         });
+    }
+
+    fn aim(&mut self, aim: Option<&'a [String]>, path: &str) {
+        let names = aim.unwrap_or_default();
+        names.iter().enumerate().for_each(|(i, name)| self.refer(Section::Targets, name, &format!("{path}.aim[{i}]")));
+        self.range(names.len() <= MOST_AIMS, &format!("{path}.aim"), "at most 4 targets");
     }
 
     fn specular(&mut self, specular: Option<Specular>, coating: Option<&'a str>, path: &str) {
