@@ -42,7 +42,7 @@ const DOORS: [(&str, &[&str]); 24] = [
     ("serde_path_to_error", &["system/document/entry.rs", "system/gltf/container.rs"]),
     ("sha2", &["system/document/mod.rs", "system/compile/mod.rs"]),
     ("signal-hook", &["cli/stop.rs"]),
-    ("smallvec", &["geometry/crossing.rs", "geometry/nearest.rs", "surface/mod.rs"]),
+    ("smallvec", &["aim/mod.rs", "geometry/crossing.rs", "geometry/nearest.rs", "surface/mod.rs"]),
     ("sobol_burley", &["math/lowdiscrepancy.rs"]),
     ("statrs", &["math/statistics.rs"]),
     ("strsim", &["error.rs"]),

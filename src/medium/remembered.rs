@@ -1,7 +1,7 @@
 //! A medium whose index is worked out beforehand at the light of the sources: a formula costs 60 to 200 ns, four times per event.
 //!
 //! At spectral lines the bits are the same as without: the index is looked up at equal wavelengths. In a continuous spectrum it is a
-//! cubic in each of many even pieces of the band ([`Band`]), within [`BOUND`] of itself; elsewhere it is asked for.
+//! cubic in each of many even pieces of the band (`Band`), within `BOUND` of itself; elsewhere it is asked for.
 
 use super::Medium;
 use super::bulk::Bulk;
