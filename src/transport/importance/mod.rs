@@ -66,8 +66,9 @@ pub struct Occasion {
     pub start: f64,
     /// Flux (W) below which it is drawn for, if it was aimed and there is no map.
     pub level: f64,
-    /// True if the surface scatters to one side only and broadly.
+    /// True if no direction is much denser than others in the lobes.
     pub broad: bool,
+    /// True if no light passes: the map knows what the side that it came to is worth.
     pub opaque: bool,
 }
 
