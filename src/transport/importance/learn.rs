@@ -99,7 +99,7 @@ impl Teacher<'_> {
     /// What scouts of all detectors sight in about `flights` flights, that go where the light is.
     fn scouted(&self, first: &Light, light: &Light, flights: f64, round: u64) -> Vec<Sighting> {
         let patches = Patches::learn(self.scene, &light.sightings, &mut Vec::new());
-        let lit = Importance { targets: Vec::new(), map: Some(Map { patches, branch: None }) };
+        let lit = Importance { map: Some(Map { patches, branch: None }), ..Importance::declared(self.scene) };
         let detectors = self.scene.detectors.len();
         let mut sightings = Vec::new();
         for detector in 0..detectors {
@@ -188,12 +188,10 @@ impl Troops<'_> {
     fn birth(&self, source: &Source, rng: &mut Rng) -> (Birth, f64) {
         let mut birth = source.emit(&mut |_| rng.uniform());
         let Some(came) = &self.came else { return (birth, 1.0) };
-        // The normal of the place: what the beam of a source without an axis is about.
-        let normal = birth.normal;
         if rng.uniform() >= EVENLY {
             birth.ray.direction = -came.draw(rng.pair());
         }
-        let cosine = birth.ray.direction.dot(normal);
+        let cosine = birth.ray.direction.dot(birth.normal);
         let even = cosine.max(0.0) / PI;
         (birth.clone(), even / (EVENLY * even + (1.0 - EVENLY) * came.density(-birth.ray.direction)))
     }
