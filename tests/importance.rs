@@ -218,6 +218,15 @@ fn sta_07_aiming_from_a_rough_mirror_is_unbiased() {
     }
 }
 
+/// Scouts are scattered by surfaces that aim, too.
+#[test]
+fn learning_where_surfaces_aim() {
+    let mut both = system("baffled_tube");
+    both.settings.importance = Guidance::Auto;
+    let flux = trace(both, Way::Aimed([0.0, 0.0, 0.2], [0.01, 0.01, 0.0]), 30_000, 5, 2).detectors["fpa"].flux_w;
+    assert!((flux.mean - 2.656e-7).abs() < 4.0 * flux.error.hypot(0.010e-7), "{flux:?}");
+}
+
 #[test]
 fn the_same_bits_on_any_number_of_threads() {
     let once = |threads| trace(system("triplet"), Way::Learned, 3000, 9, threads);
