@@ -176,9 +176,7 @@ impl Ancestry {
     pub fn step(&mut self, number: u32, event: Event, intended: bool) {
         self.events += 1;
         let step = Step::new(number, event);
-        self.key = mix(self.key.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (step.0 as u64 + 1));
-        // A longer path has no row of its own: its key is never admitted, so its tail need not be spelled.
-        let _ = self.steps.try_push(step);
+        self.spell(step);
         match event {
             Event::Reflect => {
                 self.reflections += 1;
@@ -192,6 +190,26 @@ impl Ancestry {
                 self.last_scatter = Some(step);
             }
         }
+    }
+
+    /// The same path from the other end, as light from source `source` goes it.
+    pub fn reversed(&self, source: u16) -> Ancestry {
+        let mut path = Ancestry { source, steps: ArrayVec::new(), key: mix(source as u64 + 1), ..self.clone() };
+        self.steps.iter().rev().for_each(|step| path.spell(*step));
+        let scatters = |step: &&Step| matches!(step.event(), Event::Scatter | Event::Bulk);
+        path.last_scatter = self.steps.iter().find(scatters).copied();
+        if self.events as usize > self.steps.len() {
+            // Longer paths have no row: a key that no path from a source has.
+            path.key = 0;
+        }
+        path
+    }
+
+    /// Writes a step down.
+    fn spell(&mut self, step: Step) {
+        self.key = mix(self.key.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (step.0 as u64 + 1));
+        // A longer path has no row of its own: its key is never admitted, so its tail need not be spelled.
+        let _ = self.steps.try_push(step);
     }
 
     /// Signal, leak, ghost or scatter: see [`Class`].
@@ -282,6 +300,21 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_path_reversed_is_the_path_from_the_other_end() {
+        let steps = [(3, Event::Transmit), (5, Event::Scatter), (2, Event::Reflect), (7, Event::Scatter)];
+        let go = |source: u16, steps: &mut dyn Iterator<Item = &(u32, Event)>| {
+            let mut path = Ancestry::born(source, 9);
+            steps.for_each(|&(part, event)| path.step(part, event, false));
+            path
+        };
+        let (there, back) = (go(4, &mut steps.iter()), go(0, &mut steps.iter().rev()).reversed(4));
+        assert_eq!((there.key, &there.steps, there.last_scatter), (back.key, &back.steps, back.last_scatter));
+        assert_eq!((there.class(), there.ghosts, there.source), (back.class(), back.ghosts, back.source));
+        let long: Vec<_> = (0..30).map(|part| (part, Event::Transmit)).collect();
+        assert_ne!(go(0, &mut long.iter()).reversed(0).key, go(0, &mut long.iter().rev()).key);
     }
 
     #[test]

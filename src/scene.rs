@@ -94,7 +94,7 @@ impl Scene {
     /// Slots of a run with `rows` rows in its path table.
     pub fn layout(&self, rows: usize) -> Layout {
         let bins = self.detectors.iter().map(|d| d.grid.shape().iter().product()).collect();
-        Layout::new(self.parts.len(), self.media.len(), bins, rows)
+        Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows)
     }
 
     /// Medium of the innermost of `solids`.

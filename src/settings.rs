@@ -23,6 +23,17 @@ pub struct Settings {
     /// Rows of the path table, the fullest first.
     pub paths: usize,
     pub importance: Guidance,
+    pub trace: Trace,
+}
+
+/// Which way light is followed. The expectation of every number is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trace {
+    /// From the sources.
+    #[default]
+    Forward,
+    /// From the detectors where that is possible, else from the sources.
+    Backward,
 }
 
 /// Whether the run learns first where scattered light counts. The expectation of every number is the same.
@@ -64,6 +75,7 @@ impl Default for Settings {
             until: None,
             paths: 1000,
             importance: Guidance::default(),
+            trace: Trace::default(),
         }
     }
 }

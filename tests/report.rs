@@ -90,6 +90,7 @@ fn detector(flux: Estimate, unit: &str, classes: &[(&str, f64, f64)]) -> Detecto
         peak_w_m2: Peak { mean: 2.4e3, error: 31.0, pixel: [170, 150] },
         unit: unit.into(),
         classes: named(classes),
+        sources: BTreeMap::new(),
         unresolved: 0.124,
     }
 }

@@ -39,6 +39,12 @@ impl Amplitudes {
         Amplitudes { s: -a, p: a }
     }
 
+    /// What does to row vectors from the right what these do to Stokes vectors: a^T M = (M^T a)^T. I and Q mix by a symmetric matrix,
+    /// U and V are turned, and turned back by the complex conjugate.
+    pub fn transposed(&self) -> Amplitudes {
+        Amplitudes { s: self.s.conj(), p: self.p.conj() }
+    }
+
     /// Power fraction of unpolarised light, (|s|^2 + |p|^2) / 2, 0..1.
     pub fn unpolarised(&self) -> f64 {
         0.5 * (self.s.norm_sqr() + self.p.norm_sqr())
@@ -70,6 +76,14 @@ mod tests {
         let light = Stokes::circular(2.0, Hand::Right);
         assert_eq!(Amplitudes::mirror(1.0).apply(light), Stokes::circular(2.0, Hand::Left));
         assert_eq!(Amplitudes::ideal(1.0).apply(light), light);
+    }
+
+    #[test]
+    fn a_transposed_matrix_gives_the_same_product() {
+        let a = Amplitudes { s: Complex64::new(0.3, 0.6), p: Complex64::new(-0.2, 0.5) };
+        let (light, row) = (Stokes { i: 1.0, q: 0.2, u: -0.5, v: 0.6 }, Stokes { i: 0.4, q: -0.1, u: 0.2, v: 0.3 });
+        let (one, other) = (row.dot(a.apply(light)), a.transposed().apply(row).dot(light));
+        assert!((one - other).abs() < 1e-15 && (one - row.dot(a.transposed().apply(light))).abs() > 1e-3);
     }
 
     #[test]

@@ -67,6 +67,11 @@ impl Stokes {
         Stokes { q: self.q * cos2 + self.u * sin2, u: self.u * cos2 - self.q * sin2, ..self }
     }
 
+    /// Sum of the products of their elements: the flux, W, that a detector with this row of weights counts of the light.
+    pub fn dot(self, light: Stokes) -> f64 {
+        self.i * light.i + self.q * light.q + self.u * light.u + self.v * light.v
+    }
+
     /// True if turning the axes changes its description: it has a linear part.
     pub fn is_polarised(&self) -> bool {
         self.q != 0.0 || self.u != 0.0

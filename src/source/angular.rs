@@ -3,7 +3,7 @@
 use crate::geometry::Frame;
 use crate::math::sampling;
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 /// The shape of a beam. `Some(frame)`: its axis is fixed in space; `None`: the normal of the place it starts from.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub struct Angular {
 }
 
 /// Patterns; flux per solid angle about z.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pattern {
     /// All along z.
     Collimated,
@@ -51,6 +51,22 @@ impl Angular {
                 let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
                 about(tangent * cosine, cosine)
             }
+        }
+    }
+
+    /// Share of the flux per solid angle along a local unit direction, 1/sr; 0 for a collimated beam, which has none.
+    pub fn density(&self, direction: DVec3) -> f64 {
+        let inside = |half_angle: f64| direction.z >= half_angle.cos();
+        match self.pattern {
+            Pattern::Collimated => 0.0,
+            Pattern::Cone { half_angle } if inside(half_angle) => 0.25 / PI / (0.5 * half_angle).sin().powi(2),
+            Pattern::Radiance { half_angle } if inside(half_angle) => direction.z / PI / half_angle.sin().powi(2),
+            Pattern::Gaussian { half_angle } if direction.z > 0.0 => {
+                let (cosine2, wide) = (direction.z * direction.z, half_angle.tan().powi(2));
+                let tangent2 = direction.truncate().length_squared() / cosine2;
+                FRAC_2_PI / wide * (-2.0 * tangent2 / wide).exp() / (cosine2 * direction.z)
+            }
+            _ => 0.0,
         }
     }
 }

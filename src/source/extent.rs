@@ -104,6 +104,28 @@ impl Outline {
         }
     }
 
+    /// Share of the flux per area at a place in its plane, 1/m2; 0 outside, and for a point.
+    pub fn density(&self, place: DVec2) -> f64 {
+        let squared = place.length_squared();
+        let inside = match *self {
+            Outline::Point => false,
+            Outline::Disk { radius } => squared <= radius * radius,
+            Outline::Annulus { inner, outer } => (inner * inner..=outer * outer).contains(&squared),
+            Outline::Polygon { radius, sides } => {
+                // The distance from the centre across the nearest side.
+                let wedge = TAU / sides as f64;
+                let from_middle = place.to_angle().rem_euclid(wedge) - 0.5 * wedge;
+                squared.sqrt() * from_middle.cos() <= radius * (0.5 * wedge).cos()
+            }
+            Outline::Rectangle { width, height } => place.x.abs() <= 0.5 * width && place.y.abs() <= 0.5 * height,
+            Outline::Gaussian { waist } => {
+                let (peak, waist2) = (1.0 / self.area(), waist * waist);
+                return peak * (-2.0 * squared / waist2).exp();
+            }
+        };
+        if inside { 1.0 / self.area() } else { 0.0 }
+    }
+
     fn place(&self, [u, v]: [f64; 2]) -> DVec2 {
         let polar = |radius: f64| radius * DVec2::from_angle(TAU * v);
         match *self {

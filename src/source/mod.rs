@@ -5,10 +5,12 @@
 
 pub mod angular;
 pub mod extent;
+pub mod seen;
 pub mod spectrum;
 
 pub use angular::Angular;
 pub use extent::{Extent, Spot};
+pub use seen::Reach;
 pub use spectrum::Spectrum;
 
 use crate::geometry::{Frame, Ray};

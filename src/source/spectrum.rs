@@ -1,7 +1,7 @@
 //! Which wavelengths light has. A band costs no more than a line: every ray draws one vacuum wavelength.
 
 /// Flux against vacuum wavelength, normalised.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
     /// One wavelength, m.
     Line(f64),
@@ -12,7 +12,7 @@ pub enum Spectrum {
 }
 
 /// A piecewise linear density.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Density {
     /// Rising, m.
     wavelengths: Vec<f64>,

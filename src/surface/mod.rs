@@ -194,7 +194,8 @@ impl Surface {
             all.value += self.factor(k, shares.lobes) * value;
             all.density += part * density;
         }
-        Weighed { value: all.value * wo.z.abs(), density: all.density / shares.scattered }
+        let density = if shares.scattered > 0.0 { all.density / shares.scattered } else { 0.0 };
+        Weighed { value: all.value * wo.z.abs(), density }
     }
 }
 

@@ -108,6 +108,7 @@ mod tests {
         options::<Receiver>();
         options::<Target>();
         options::<Importance>();
+        options::<Way>();
         options::<Quantity>();
         options::<Bins>();
     }

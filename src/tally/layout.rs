@@ -54,6 +54,7 @@ impl Loss {
 pub struct Layout {
     parts: usize,
     media: usize,
+    sources: usize,
     /// First slot of each detector.
     detectors: Vec<usize>,
     /// Bins of each detector.
@@ -64,8 +65,8 @@ pub struct Layout {
 
 const CUTS: usize = Cut::ALL.len();
 const LOSSES: usize = Loss::ALL.len();
-/// emitted, absorbed, escaped, terminated, lost, residual.
-const TOTALS: usize = 6;
+/// emitted, absorbed, escaped, terminated, lost, residual; lost backwards.
+const TOTALS: usize = 7;
 /// Per path row: flux, flux x optical path, then the coarse grid.
 const ROW: usize = 2 + PATH_GRID * PATH_GRID;
 
@@ -76,19 +77,21 @@ impl Layout {
     pub const TERMINATED: usize = 3;
     pub const LOST: usize = 4;
     pub const RESIDUAL: usize = 5;
+    /// Of what detectors sent out backwards: what was cut by the limit on events or lost to geometry faults, in shares.
+    pub const LOST_BACKWARDS: usize = 6;
 
-    /// Slots for so many parts, media, bins per detector and path rows.
-    pub fn new(parts: usize, media: usize, bins: Vec<usize>, rows: usize) -> Layout {
+    /// Slots for so many parts, media, sources, bins per detector and path rows.
+    pub fn new(parts: usize, media: usize, sources: usize, bins: Vec<usize>, rows: usize) -> Layout {
         let mut next = TOTALS + CUTS + LOSSES + parts + media;
         let detectors = bins
             .iter()
             .map(|bins| {
                 let first = next;
-                next += 2 + Class::COUNT + bins;
+                next += 2 + Class::COUNT + sources + bins;
                 first
             })
             .collect();
-        Layout { parts, media, detectors, bins, rows, first_row: next }
+        Layout { parts, media, sources, detectors, bins, rows, first_row: next }
     }
 
     /// Number of slots.
@@ -131,8 +134,13 @@ impl Layout {
         self.detectors[detector] + 2 + class
     }
 
+    /// Flux on a detector from a source.
+    pub fn source(&self, detector: usize, source: usize) -> usize {
+        self.detectors[detector] + 2 + Class::COUNT + source
+    }
+
     pub fn bin(&self, detector: usize, bin: usize) -> usize {
-        self.detectors[detector] + 2 + Class::COUNT + bin
+        self.detectors[detector] + 2 + Class::COUNT + self.sources + bin
     }
 
     /// Bins of a detector.
@@ -183,12 +191,13 @@ mod tests {
 
     #[test]
     fn no_two_numbers_share_a_slot() {
-        let layout = Layout::new(3, 2, vec![4, 5], 6);
+        let layout = Layout::new(3, 2, 4, vec![4, 5], 6);
         let mut slots: Vec<usize> = (0..TOTALS).collect();
         slots.extend(layout.cuts().chain(layout.losses()).chain(layout.absorbers()));
         for d in 0..2 {
             slots.extend([layout.detector(d), layout.other(d)]);
             slots.extend((0..Class::COUNT).map(|c| layout.class(d, c)));
+            slots.extend((0..4).map(|s| layout.source(d, s)));
             slots.extend((0..layout.bins(d)).map(|b| layout.bin(d, b)));
         }
         for row in 0..6 {

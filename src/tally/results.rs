@@ -58,6 +58,8 @@ pub struct DetectorResult {
     pub unit: String,
     /// Flux by class, W: "signal", "direct leak", "ghost 1", "scatter 1", ... All rows add up to `flux_w`.
     pub classes: BTreeMap<String, Estimate>,
+    /// Flux by source, W.
+    pub sources: BTreeMap<String, Estimate>,
     /// Fraction of bins with fewer than 30 contributing source rays among those with any, 0..1.
     pub unresolved: f64,
 }

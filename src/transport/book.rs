@@ -1,8 +1,9 @@
 //! The bookkeeper: turns what happens to packets into sums in slots.
 
+use super::backward::Backward;
 use super::paths::{Candidates, Rows};
 use crate::detector::Arrival;
-use crate::packet::Packet;
+use crate::packet::Ancestry;
 use crate::scene::Scene;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
 use crate::tally::{Layout, Live, Sums};
@@ -16,46 +17,74 @@ pub struct Book<'a, const V: usize> {
     pub candidates: Candidates,
     /// Flights from event to event.
     pub segments: u64,
+    /// What is counted from the other end.
+    pub backward: Option<&'a Backward>,
+    /// The share of all rays that a unit is, while rays go backwards: they have no ledger.
+    pub unit: Option<f64>,
 }
 
 impl<'a, const V: usize> Book<'a, V> {
     pub fn new(layout: &'a Layout, live: Live<V>, rows: Option<&'a Rows>) -> Book<'a, V> {
-        Book { layout, live, rows, candidates: Candidates::default(), segments: 0 }
+        Book { layout, live, rows, candidates: Candidates::default(), segments: 0, backward: None, unit: None }
     }
 
     pub fn emitted(&mut self, flux: [f64; V]) {
-        self.live.add(Layout::EMITTED, flux);
+        self.ledger(Layout::EMITTED, flux);
     }
 
     pub fn escaped(&mut self, flux: [f64; V]) {
-        self.live.add(Layout::ESCAPED, flux);
+        self.ledger(Layout::ESCAPED, flux);
     }
 
     pub fn absorbed_in_part(&mut self, part: u32, flux: [f64; V]) {
-        self.live.add(self.layout.part(part as usize), flux);
+        self.ledger(self.layout.part(part as usize), flux);
     }
 
     pub fn absorbed_in_medium(&mut self, medium: u16, flux: [f64; V]) {
-        self.live.add(self.layout.medium(medium as usize), flux);
+        self.ledger(self.layout.medium(medium as usize), flux);
     }
 
     pub fn cut(&mut self, cut: Cut, flux: [f64; V]) {
-        self.live.add(self.layout.cut(cut), flux);
+        self.ledger(self.layout.cut(cut), flux);
+        if cut == Cut::Events {
+            self.lost_backwards(flux);
+        }
     }
 
     pub fn lost(&mut self, loss: Loss, flux: [f64; V]) {
-        self.live.add(self.layout.loss(loss), flux);
+        self.ledger(self.layout.loss(loss), flux);
+        self.lost_backwards(flux);
     }
 
-    /// Light arrives at a detector.
-    pub fn arrived(&mut self, scene: &Scene, detector: usize, packet: &Packet<V>, arrival: &Arrival) {
+    fn ledger(&mut self, slot: usize, flux: [f64; V]) {
+        if self.unit.is_none() {
+            self.live.add(slot, flux);
+        }
+    }
+
+    fn lost_backwards(&mut self, flux: [f64; V]) {
+        if let Some(unit) = self.unit {
+            self.live.add(Layout::LOST_BACKWARDS, flux.map(|flux| flux * unit));
+        }
+    }
+
+    /// Light arrives at a detector; what is counted from the other end is not counted twice.
+    pub fn arrived(&mut self, scene: &Scene, detector: usize, ancestry: &Ancestry, flux: [f64; V], arrival: &Arrival) {
+        if !self.backward.is_some_and(|backward| backward.counts(detector, ancestry)) {
+            self.counted(scene, detector, ancestry, flux, arrival);
+        }
+    }
+
+    /// Light on a detector, by whichever way it was found.
+    pub fn counted(&mut self, scene: &Scene, detector: usize, ancestry: &Ancestry, flux: [f64; V], arrival: &Arrival) {
         let grid = &scene.detectors[detector].grid;
         let Some(bin) = grid.bin(arrival) else { return };
-        let Some(rows) = self.rows else { return self.candidates.note(detector, packet) };
-        let flux = packet.fluxes();
-        let ancestry = &packet.ancestry;
+        let Some(rows) = self.rows else {
+            return self.candidates.note(detector, ancestry, flux.into_iter().fold(0.0, f64::max));
+        };
         self.live.add(self.layout.detector(detector), flux);
         self.live.add(self.layout.class(detector, ancestry.class().index()), flux);
+        self.live.add(self.layout.source(detector, ancestry.source.into()), flux);
         self.live.add(self.layout.bin(detector, bin), flux);
         match rows.find(detector, ancestry.key) {
             None => self.live.add(self.layout.other(detector), flux),

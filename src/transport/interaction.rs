@@ -1,5 +1,6 @@
 //! Light meets a surface: the bill of what is reflected, transmitted, scattered and absorbed, and the branches that go on.
 
+use super::backward::{connect, reverse};
 use super::film;
 use super::scatter;
 use super::walk::Walk;
@@ -17,15 +18,21 @@ use glam::{DVec2, DVec3};
 
 /// What one arrival comes to, per lane. Stokes vectors are in the frame whose x is s, W.
 pub(super) struct Bill<const V: usize> {
-    reflected: [Stokes; V],
-    transmitted: [Stokes; V],
+    pub(super) reflected: [Stokes; V],
+    pub(super) transmitted: [Stokes; V],
     /// Scattered flux, W.
     pub(super) scattered: [f64; V],
 }
 
+impl<const V: usize> Bill<V> {
+    pub(super) fn nothing() -> Bill<V> {
+        Bill { reflected: [Stokes::ZERO; V], transmitted: [Stokes::ZERO; V], scattered: [0.0; V] }
+    }
+}
+
 /// The meeting: geometry and models.
 pub(super) struct Meeting<'a, const V: usize> {
-    crossed: Crossed,
+    pub(super) crossed: Crossed,
     /// Whether light arrives at the front of the acting face.
     pub(super) front: bool,
     pub(super) part: u32,
@@ -35,7 +42,7 @@ pub(super) struct Meeting<'a, const V: usize> {
     /// The same for all lanes but for the lay of their surfaces.
     pub(super) at: [Incidence; V],
     /// Local direction of the refracted ray, if there is one.
-    refracted: Option<DVec3>,
+    pub(super) refracted: Option<DVec3>,
 }
 
 /// Lets the packet meet what it has reached. Branches to follow later go to `walk.waiting`; true if `packet` itself goes on.
@@ -50,24 +57,36 @@ pub fn interact<const V: usize, W: Watch>(walk: &mut Walk<V, W>, packet: &mut Pa
         packet.solids = crossed.beyond;
         return true;
     };
-    let meeting = meet(walk.scene, packet, crossed, acting);
-    let mut bill = bill(&meeting, packet);
+    let meeting = meet(walk.scene, packet.ray.direction, packet.wavelength, crossed, acting);
+    let backwards = walk.trail.is_some();
+    let mut bill =
+        if backwards { reverse::bill(walk.scene, packet, crossing, &meeting) } else { bill(&meeting, packet) };
     absorb(walk, packet, &meeting, &bill);
     watch(walk, packet, crossing, &meeting, &bill);
     limit(walk, packet, &meeting, &mut bill);
+    if backwards {
+        connect::beams(walk, packet, crossing, &meeting, &bill);
+    }
     branch(walk, packet, crossing, &meeting, &bill)
 }
 
-fn meet<'a, const V: usize>(scene: &'a Scene, packet: &Packet<V>, crossed: Crossed, hit: Hit) -> Meeting<'a, V> {
+/// Light of a direction and a vacuum wavelength (m) at a face.
+pub(super) fn meet<const V: usize>(
+    scene: &Scene,
+    direction: DVec3,
+    wavelength: f64,
+    crossed: Crossed,
+    hit: Hit,
+) -> Meeting<'_, V> {
     let normal = if hit.front { hit.normal } else { -hit.normal };
     // x lies in the plane of incidence, so y is the direction of s.
-    let frame = Frame::from_z_x(normal, -packet.ray.direction);
-    let mut wi = frame.to_local(-packet.ray.direction);
+    let frame = Frame::from_z_x(normal, -direction);
+    let mut wi = frame.to_local(-direction);
     // At grazing incidence the sign of d.n may round the other way; the hit knows better.
     wi.z = wi.z.max(f64::MIN_POSITIVE);
-    let index = crossed.media.map(|medium| scene.index(medium, packet.wavelength));
+    let index = crossed.media.map(|medium| scene.index(medium, wavelength));
     let surfaces: [&Surface; V] = std::array::from_fn(|lane| scene.surface(hit, lane));
-    let at = surfaces.map(|surface| Incidence { wi, wavelength: packet.wavelength, index, lay: lay(surface, &frame) });
+    let at = surfaces.map(|surface| Incidence { wi, wavelength, index, lay: lay(surface, &frame) });
     let shares = std::array::from_fn(|lane| surfaces[lane].shares(&at[lane]));
     let refracted = refraction::refract(wi, index[0].re, index[1].re);
     let part = scene.part_of[hit.triangle as usize];
@@ -81,7 +100,7 @@ fn lay(surface: &Surface, frame: &Frame) -> DVec2 {
 }
 
 fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
-    let mut bill = Bill { reflected: [Stokes::ZERO; V], transmitted: [Stokes::ZERO; V], scattered: [0.0; V] };
+    let mut bill = Bill::nothing();
     let mut light = packet.light;
     if light.iter().any(|light| light.is_polarised()) {
         reframe(&mut light, packet.ray.direction, packet.transverse, meeting.frame.y);
@@ -103,7 +122,7 @@ fn bill<const V: usize>(meeting: &Meeting<V>, packet: &Packet<V>) -> Bill<V> {
 }
 
 /// What passes the surface of a lane, in the frame of s; some surfaces act along an axis of their own.
-fn transmit<const V: usize>(
+pub(super) fn transmit<const V: usize>(
     meeting: &Meeting<V>,
     lane: usize,
     direction: DVec3,

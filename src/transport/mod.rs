@@ -1,5 +1,6 @@
 //! Transport: batches of source rays over all cores, folded in a fixed order.
 
+pub mod backward;
 pub mod book;
 mod bulk;
 mod film;
@@ -13,10 +14,11 @@ pub mod watch;
 
 use crate::math::rng::mix;
 use crate::scene::Scene;
-use crate::settings::{Guidance, Settings};
+use crate::settings::{Guidance, Settings, Trace};
 use crate::tally::{Fold, Layout, Live, Sums};
+use backward::Backward;
 use book::Book;
-use importance::Importance;
+use importance::{Importance, Learned, Lit};
 use paths::{Candidates, Rows};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -60,11 +62,14 @@ pub fn run<const V: usize>(
 ) -> Counts<V> {
     let batch_rays = settings.batch_rays();
     let quotas = quotas(scene, batch_rays);
-    let importance = match settings.importance {
+    let Learned { importance, lit } = match settings.importance {
         Guidance::Auto => importance::learn(scene, settings, &quotas, batch_rays, stop),
-        Guidance::Off => Importance::declared(scene),
+        Guidance::Off => Learned { importance: Importance::declared(scene), lit: Lit::default() },
     };
-    let rows = pilot::<V>(scene, settings, &importance, &quotas, batch_rays, stop);
+    let backward = (settings.trace == Trace::Backward).then(|| Backward::new(scene, lit));
+    let plan =
+        Plan { scene, settings, importance: &importance, backward: backward.as_ref(), quotas: &quotas, batch_rays };
+    let rows = pilot::<V>(&plan, stop);
     let layout = scene.layout(rows.rows.len());
     let pool = Mutex::new(Vec::new());
     let mut fold = Fold::default();
@@ -77,10 +82,7 @@ pub fn run<const V: usize>(
             let chunk: Vec<_> = batches
                 .into_par_iter()
                 .with_max_len(1)
-                .map(|batch| {
-                    (!stop.load(Ordering::Relaxed))
-                        .then(|| one_batch(scene, settings, &importance, &layout, &rows, &quotas, &pool, batch))
-                })
+                .map(|batch| (!stop.load(Ordering::Relaxed)).then(|| plan.counted(&layout, &rows, &pool, batch)))
                 .collect();
             for finished in chunk {
                 let Some((sums, flights)) = finished else { break 'stages };
@@ -123,28 +125,48 @@ fn precise_enough<const V: usize>(settings: &Settings, layout: &Layout, sums: &S
     })
 }
 
-#[allow(clippy::too_many_arguments)]
-fn one_batch<const V: usize>(
-    scene: &Scene,
-    settings: &Settings,
-    importance: &Importance,
-    layout: &Layout,
-    rows: &Rows,
-    quotas: &[Quota],
-    pool: &Mutex<Vec<Live<V>>>,
-    batch: u64,
-) -> (Sums<V>, u64) {
-    let idle = pool.lock().ok().and_then(|mut pool| pool.pop());
-    let live = idle.unwrap_or_else(|| Live::new(layout.len()));
-    let book = Book::new(layout, live, Some(rows));
-    let mut walk = Walk::new(scene, settings, importance, book, Unwatched);
-    walk.batch(batch, quotas);
-    let sums = walk.book.finish();
-    let segments = walk.book.segments;
-    if let Ok(mut pool) = pool.lock() {
-        pool.push(walk.book.live);
+/// What every batch of a run needs.
+#[derive(Clone, Copy)]
+struct Plan<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    importance: &'a Importance,
+    backward: Option<&'a Backward>,
+    quotas: &'a [Quota],
+    batch_rays: u64,
+}
+
+impl<'a> Plan<'a> {
+    /// Traces a batch by the random numbers of `seed`, from both ends, into a book.
+    fn trace<const V: usize>(&self, mut book: Book<'a, V>, seed: u64, batch: u64) -> Book<'a, V> {
+        book.backward = self.backward;
+        let mut walk = Walk::new(self.scene, self.settings, self.importance, book, Unwatched);
+        walk.seed = seed;
+        walk.batch(batch, self.quotas);
+        match self.backward {
+            None => walk.book,
+            Some(backward) => backward.batch(self.scene, self.settings, walk.book, seed, (batch, self.batch_rays)),
+        }
     }
-    (sums, segments)
+
+    /// The sums of a batch, and its flights.
+    fn counted<const V: usize>(
+        &self,
+        layout: &'a Layout,
+        rows: &'a Rows,
+        pool: &Mutex<Vec<Live<V>>>,
+        batch: u64,
+    ) -> (Sums<V>, u64) {
+        let idle = pool.lock().ok().and_then(|mut pool| pool.pop());
+        let live = idle.unwrap_or_else(|| Live::new(layout.len()));
+        let mut book = self.trace(Book::new(layout, live, Some(rows)), self.settings.seed, batch);
+        let sums = book.finish();
+        let segments = book.segments;
+        if let Ok(mut pool) = pool.lock() {
+            pool.push(book.live);
+        }
+        (sums, segments)
+    }
 }
 
 /// Parts of the run that the pilot may trace; it goes on to the next while it has seen too little.
@@ -155,36 +177,26 @@ const ENOUGH: f64 = 256.0;
 
 /// Chooses the rows of the path table with random numbers of their own: from a sixteenth of the run, up to a quarter where
 /// little arrives; at most 2^20 and 2^22 rays.
-fn pilot<const V: usize>(
-    scene: &Scene,
-    settings: &Settings,
-    importance: &Importance,
-    quotas: &[Quota],
-    batch_rays: u64,
-    stop: &AtomicBool,
-) -> Rows {
+fn pilot<const V: usize>(plan: &Plan, stop: &AtomicBool) -> Rows {
+    let settings = plan.settings;
     if settings.paths == 0 {
         return Rows::default();
     }
-    let layout = scene.layout(0);
+    let layout = plan.scene.layout(0);
     let seed = mix(settings.seed ^ 0x7069_6c6f_7421);
     let trace = |batch: u64| {
         let book = Book::new(&layout, Live::<V>::new(layout.len()), None);
-        let mut walk = Walk::new(scene, settings, importance, book, Unwatched);
-        walk.seed = seed;
-        if !stop.load(Ordering::Relaxed) {
-            walk.batch(batch, quotas);
-        }
-        walk.book.candidates
+        let stopped = stop.load(Ordering::Relaxed);
+        if stopped { Candidates::default() } else { plan.trace(book, seed, batch).candidates }
     };
     let (mut seen, mut done) = (Candidates::default(), 0);
     for part in PILOT {
         let rays = (settings.rays / part).clamp(256, (1 << 24) / part);
-        let end = rays.div_ceil(batch_rays);
+        let end = rays.div_ceil(plan.batch_rays);
         let round: Vec<Candidates> = (done..end).into_par_iter().map(trace).collect();
         seen = round.into_iter().fold(seen, Candidates::merge);
         done = end;
-        if seen.effective(scene.detectors.len()) >= ENOUGH {
+        if seen.effective(plan.scene.detectors.len()) >= ENOUGH {
             break;
         }
     }

@@ -3,7 +3,7 @@
 //! Rows are chosen by a pilot run with random numbers of its own, so that the rows of the run proper are unbiased: a row is
 //! not there *because* of the light that it counts. What has no row is summed exactly in "other".
 
-use crate::packet::{Ancestry, Class, Packet, Step};
+use crate::packet::{Ancestry, Class, Step};
 use std::collections::{BTreeMap, HashMap};
 
 /// A row of the path table.
@@ -42,9 +42,8 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Notes an arrival; a path too long to spell out never gets a row.
-    pub fn note<const V: usize>(&mut self, detector: usize, packet: &Packet<V>) {
-        let (ancestry, flux) = (&packet.ancestry, packet.flux());
+    /// Notes an arrival of `flux` (W); a path too long to spell out never gets a row.
+    pub fn note(&mut self, detector: usize, ancestry: &Ancestry, flux: f64) {
         let [sum, squares] = self.arrivals.entry(detector).or_default();
         (*sum, *squares) = (*sum + flux, *squares + flux * flux);
         if ancestry.events as usize > ancestry.steps.len() {

@@ -1,5 +1,6 @@
 //! Scattered light goes on: how many branches, where to, and what each weighs.
 
+use super::backward::reverse;
 use super::importance::{Advice, Occasion};
 use super::interaction::{Bill, Meeting, depart};
 use super::walk::Walk;
@@ -41,6 +42,7 @@ pub fn plan<'a, const V: usize, W: Watch>(
     let specular = refraction::reflect(meeting.at[0].wi);
     let broad = importance.map.is_none() || surface.weigh(&meeting.at[0], &meeting.shares[0], specular).density < BROAD;
     let occasion = Occasion {
+        source: packet.ancestry.source,
         part: meeting.part,
         front: meeting.front,
         point: packet.ray.origin,
@@ -51,7 +53,7 @@ pub fn plan<'a, const V: usize, W: Watch>(
         opaque: surface.opaque(),
     };
     let mut advice = importance.advise(walk.scene, &occasion);
-    if advice.is_plain() {
+    if advice.is_plain() && walk.trail.is_none() {
         return Plan { branches: 1, advice, factor, level: 0.0, turn: 0.0 };
     }
     if importance.map.is_some() && advice.lobes < 1.0 {
@@ -61,6 +63,9 @@ pub fn plan<'a, const V: usize, W: Watch>(
             let aimed = advice.density(world, 0.0) / (1.0 - advice.lobes);
             advice.balance(lobes, aimed);
         }
+    }
+    if walk.trail.is_some() {
+        advice.spread();
     }
     let (whole, part) = (advice.branches.floor(), advice.branches.fract());
     let branches = whole + (part > 0.0 && packet.rng.uniform() < part) as u8 as f64;
@@ -117,13 +122,17 @@ fn one<const V: usize, W: Watch>(
     let weighed: [Weighed; V] = std::array::from_fn(|l| surfaces[l].weigh(&at[l], &shares[l], wo));
     let lobes: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
     let density = if plan.advice.is_plain() { lobes } else { plan.advice.density(meeting.frame.to_world(wo), lobes) };
-    for (l, weighed) in weighed.into_iter().enumerate() {
+    let values = match &walk.trail {
+        None => weighed.map(|weighed| weighed.value),
+        Some(_) => reverse::values(walk.scene, packet, crossing, meeting, wo).map_or([0.0; V], |(values, _)| values),
+    };
+    for (l, value) in values.into_iter().enumerate() {
         // `scattered` may have been cut to zero by a limit in this lane only.
         let alive = (bill.scattered[l] > 0.0) as u8 as f64;
-        let flux = alive * packet.light[l].i * weighed.value / density;
+        let flux = alive * packet.light[l].i * value / density;
         packet.light[l] = Stokes::unpolarised(flux * plan.factor);
     }
-    if !plan.advice.is_plain() && !survives(walk, packet, plan, wo.z.abs(), [density, lobes]) {
+    if packet.flux() == 0.0 || !plan.advice.is_plain() && !survives(walk, packet, plan, wo.z.abs(), [density, lobes]) {
         return false;
     }
     packet.level = if aimed { plan.level } else { 0.0 };

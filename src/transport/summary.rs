@@ -106,6 +106,13 @@ impl<const V: usize> Teller<'_, V> {
             doubts
                 .push(format!("the ledger does not close: residual {:.3e} ± {:.1e} W", residual.mean, residual.error));
         }
+        let backwards = self.estimate(Layout::LOST_BACKWARDS).mean;
+        if backwards > MOST_LOST {
+            let share = 100.0 * backwards;
+            doubts.push(format!(
+                "{share:.2e} % of what detectors sent out backwards was cut by max_events or lost to geometry faults"
+            ));
+        }
         if self.estimate(self.counts.layout.cut(Cut::Events)).mean > 0.0 {
             doubts.push("the limit max_events cut some light: see the ledger".into());
         }
@@ -124,6 +131,8 @@ impl<const V: usize> Teller<'_, V> {
             .map(|c| (Class::from_index(c).label(self.scene.has_optics), self.estimate(layout.class(d, c))))
             .filter(|(_, e)| e.mean > 0.0)
             .collect();
+        let sources = self.scene.sources.iter().enumerate();
+        let sources = sources.map(|(s, source)| (source.label.clone(), self.estimate(layout.source(d, s)))).collect();
         DetectorResult {
             flux_w,
             interval95_w: flux_w.error * student95(self.sums().batches),
@@ -132,6 +141,7 @@ impl<const V: usize> Teller<'_, V> {
             peak_w_m2: self.peak(d),
             unit: self.scene.detectors[d].grid.unit().into(),
             classes,
+            sources,
             unresolved,
         }
     }

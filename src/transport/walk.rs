@@ -1,5 +1,6 @@
 //! One source ray from birth to the last of its branches: emit, fly, arrive, interact.
 
+use super::backward::{Trail, connect};
 use super::book::Book;
 use super::bulk;
 use super::film;
@@ -31,6 +32,8 @@ pub struct Walk<'a, const V: usize, W: Watch> {
     pub waiting: Vec<Packet<V>>,
     /// Flux of the source ray in hand, W.
     pub start: f64,
+    /// Where the ray in hand comes from, if it goes backwards.
+    pub trail: Option<Trail<'a>>,
 }
 
 /// Which rays of a batch a source has: `first..first + count`.
@@ -80,7 +83,17 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
         book: Book<'a, V>,
         watch: W,
     ) -> Walk<'a, V, W> {
-        Walk { scene, settings, importance, seed: settings.seed, book, watch, waiting: Vec::new(), start: 0.0 }
+        Walk {
+            scene,
+            settings,
+            importance,
+            seed: settings.seed,
+            book,
+            watch,
+            waiting: Vec::new(),
+            start: 0.0,
+            trail: None,
+        }
     }
 
     /// Traces every source ray of batch `batch`.
@@ -157,7 +170,9 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
 
     /// A face is reached; true if `packet` itself goes on.
     fn meet(&mut self, packet: &mut Packet<V>, crossing: Crossing) -> bool {
-        self.arrive(packet, &crossing);
+        if self.trail.is_none() {
+            self.arrive(packet, &crossing);
+        }
         interact(self, packet, &crossing)
     }
 
@@ -196,18 +211,35 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
         let most = crossing.as_ref().map_or(f64::INFINITY, |crossing| crossing.distance);
         if let Some(distance) = bulk::free_path(self.scene, medium, packet, most) {
             let end = packet.ray.at(distance);
-            self.pass_windows(packet, Some(end));
+            self.pass(packet, Some(end));
             self.pass_medium(packet, medium, distance);
             packet.ray.origin = end;
             return End::Bulk(medium);
         }
-        self.pass_windows(packet, crossing.as_ref().map(|crossing| crossing.point));
+        self.pass(packet, crossing.as_ref().map(|crossing| crossing.point));
         let Some(crossing) = crossing else {
             self.escape(packet);
             return End::Escaped;
         };
         self.pass_medium(packet, medium, crossing.distance);
         End::Face(crossing)
+    }
+
+    /// What there is in free space on a flight to `end`: detectors, or for a ray that goes backwards, sources.
+    fn pass(&mut self, packet: &Packet<V>, end: Option<DVec3>) {
+        if self.trail.is_none() {
+            return self.pass_windows(packet, end);
+        }
+        let most = end.map_or(f64::INFINITY, |end| (end - packet.ray.origin).length());
+        connect::planes(self, packet, most);
+    }
+
+    /// The ray in hand, which goes backwards, has met light that will come to its detector on this path.
+    pub fn found(&mut self, path: &Ancestry, flux: [f64; V]) {
+        let Some(trail) = &self.trail else { return };
+        let (detector, arrival) = (trail.detector, trail.arrival);
+        self.watch.arrives(detector, arrival.direction, flux.iter().fold(0.0, |most: f64, flux| most.max(*flux)));
+        self.book.counted(self.scene, detector, path, flux, &arrival);
     }
 
     /// Absorption and optical path over `distance` (m) in a medium.
@@ -239,7 +271,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
             }
             let arrival = Arrival { point, direction: packet.ray.direction, triangle: None };
             self.watch.arrives(detector, packet.ray.direction, here.flux());
-            self.book.arrived(self.scene, detector, &here, &arrival);
+            self.book.arrived(self.scene, detector, &here.ancestry, here.fluxes(), &arrival);
         }
     }
 
@@ -254,7 +286,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                         triangle: Some(hit.triangle),
                     };
                     self.watch.arrives(detector as usize, packet.ray.direction, packet.flux());
-                    self.book.arrived(self.scene, detector as usize, packet, &arrival);
+                    self.book.arrived(self.scene, detector as usize, &packet.ancestry, packet.fluxes(), &arrival);
                 }
             }
         }
@@ -262,9 +294,9 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
 
     fn escape(&mut self, packet: &Packet<V>) {
         for (detector, watched) in self.scene.detectors.iter().enumerate() {
-            if matches!(watched.place, Place::FarField) {
+            if self.trail.is_none() && matches!(watched.place, Place::FarField) {
                 let arrival = Arrival { point: packet.ray.origin, direction: packet.ray.direction, triangle: None };
-                self.book.arrived(self.scene, detector, packet, &arrival);
+                self.book.arrived(self.scene, detector, &packet.ancestry, packet.fluxes(), &arrival);
             }
         }
         self.watch.escaped(packet.ray, packet.flux());

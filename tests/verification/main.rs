@@ -4,6 +4,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod adjoint;
 mod cavities;
 mod pulls;
 mod radiometry;

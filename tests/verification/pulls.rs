@@ -13,6 +13,7 @@ const CHANCE: f64 = 1e-3;
 #[ignore = "full size; cargo test --release --test verification -- --ignored"]
 fn pulls_of_all_cases_are_normal() {
     let cases = [
+        crate::adjoint::CASES,
         crate::radiometry::CASES,
         crate::cavities::CASES,
         crate::stray::CASES,

@@ -18,13 +18,13 @@ mod scatterer;
 mod targets;
 pub mod understanding;
 
-use super::document::{Document, Importance};
+use super::document::{Document, Importance, Way};
 use super::gltf::Node;
 use crate::bsdf::contamination::Deposit;
 use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
-use crate::settings::{Guidance, Roulette, Settings, Until};
+use crate::settings::{Guidance, Roulette, Settings, Trace, Until};
 use assembly::Assembly;
 pub use coated::{Coated, coated};
 use glam::DVec3;
@@ -214,6 +214,10 @@ fn settings(document: &Document) -> Settings {
         importance: match run.importance {
             Importance::Auto => Guidance::Auto,
             Importance::Off => Guidance::Off,
+        },
+        trace: match run.trace {
+            Way::Forward => Trace::Forward,
+            Way::Backward => Trace::Backward,
         },
     }
 }

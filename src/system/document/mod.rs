@@ -38,7 +38,7 @@ pub use medium::Medium;
 pub use names::Names;
 pub use parameter::Choice;
 pub use read::SECTIONS;
-pub use run::{Importance, Roulette, Run, Until};
+pub use run::{Importance, Roulette, Run, Until, Way};
 pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis, ScatterSide, Unmeasured};
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use stack::{Layer, Thickness};

@@ -31,6 +31,19 @@ pub struct Run {
     pub paths: u32,
     /// Whether the run learns first where scattered light counts.
     pub importance: Importance,
+    /// Which way light is followed.
+    pub trace: Way,
+}
+
+/// Which way light is followed. Every number means the same; the errors differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Way {
+    /// From the sources.
+    #[default]
+    Forward,
+    /// From the detectors, all beams at once; what they cannot see from the sources.
+    Backward,
 }
 
 /// Whether the run learns first where scattered light counts. Every number means the same; the errors differ.
@@ -59,6 +72,7 @@ impl Default for Run {
             until: None,
             paths: 1000,
             importance: Importance::default(),
+            trace: Way::default(),
         }
     }
 }

@@ -3,12 +3,12 @@
 use super::directions::Directions;
 use super::patches::Patches;
 use super::scout::{Scout, Sighting, Way, shining, wavelength};
-use super::{Importance, Map};
+use super::{Importance, Learned, Lit, Map};
 use crate::math::Rng;
 use crate::math::rng::mix;
 use crate::packet::Ancestry;
 use crate::scene::Scene;
-use crate::settings::{Roulette, Settings};
+use crate::settings::{Roulette, Settings, Trace};
 use crate::source::{Birth, Source};
 use crate::tally::{Layout, Live};
 use crate::transport::book::Book;
@@ -30,6 +30,9 @@ const VANGUARD: u64 = 4;
 /// Part of the run's rays that look where light comes to, and their most.
 const LOOKS: u64 = 64;
 const MOST_LOOKS: u64 = 1 << 14;
+/// Part of the run's rays that tell rays from the detectors where light is, and their most.
+const LIGHTS: u64 = 8;
+const MOST_LIGHTS: u64 = 1 << 17;
 /// Share of the scouts that set off evenly.
 const EVENLY: f64 = 0.3;
 /// Arrivals that tell where light comes from.
@@ -43,7 +46,7 @@ const ROUNDS: [f64; 3] = [0.15, 0.25, 0.6];
 /// What a run needs to know of importance, by random numbers of its own. Does not depend on the number of threads.
 ///
 /// Light looks where it comes to; scouts then go where it is; light then goes where scouts found worth; and so on.
-pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u64, stop: &AtomicBool) -> Importance {
+pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u64, stop: &AtomicBool) -> Learned {
     let settings = &Settings {
         seed: mix(settings.seed ^ 0x696d_706f_7274),
         roulette: Roulette { below: 1e-6, survive: 0.1 },
@@ -51,22 +54,27 @@ pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u
     };
     let teacher = Teacher { scene, settings, quotas, batch_rays, layout: scene.layout(0), stop };
     let declared = Importance::declared(scene);
-    let (first, flights) = teacher.light(&declared, 0);
-    let rays = (teacher.looks() * batch_rays) as f64;
-    let flights = (SCOUTED * flights as f64 / rays * settings.rays as f64).clamp(FLIGHTS[0], FLIGHTS[1]);
+    let looks = teacher.batches(LOOKS, MOST_LOOKS);
+    let (first, flights) = teacher.light(&declared, 0, looks);
+    let looked = (looks * batch_rays) as f64;
+    let flights = (SCOUTED * flights as f64 / looked * settings.rays as f64).clamp(FLIGHTS[0], FLIGHTS[1]);
     let (mut light, mut importance) = (None, declared);
     for (round, share) in ROUNDS.into_iter().enumerate() {
         let sightings = teacher.scouted(&first, light.as_ref().unwrap_or(&first), share * flights, round as u64);
         let mut targets = scene.targets.clone();
         let patches = Patches::learn(scene, &sightings, &mut targets);
-        let whole: f64 = first.visits.iter().map(|visit| visit.worth(&patches)).sum();
-        let branch = whole / (BRANCHES * rays);
-        importance = Importance { targets, map: (branch > 0.0).then_some(Map { patches, branch: Some(branch) }) };
+        let branches = teacher.branches(&first, looks, &patches);
+        importance = Importance { targets, map: branches.map(|branches| Map { patches, branches }), aimless: false };
         if round + 1 < ROUNDS.len() {
-            light = Some(teacher.light(&importance, round as u64 + 1).0);
+            light = Some(teacher.light(&importance, round as u64 + 1, looks).0);
         }
     }
-    importance
+    let lit = || {
+        let batches = teacher.batches(LIGHTS, MOST_LIGHTS);
+        teacher.lit(&teacher.light(&importance, ROUNDS.len() as u64, batches).0, true)
+    };
+    let lit = if settings.trace == Trace::Backward { lit() } else { Lit::default() };
+    Learned { importance, lit }
 }
 
 struct Teacher<'a> {
@@ -79,33 +87,31 @@ struct Teacher<'a> {
 }
 
 impl Teacher<'_> {
-    /// Batches that look where light comes to.
-    fn looks(&self) -> u64 {
-        (self.settings.rays / LOOKS).clamp(256, MOST_LOOKS).div_ceil(self.batch_rays)
+    /// Batches of a part of the run's rays, at most so many rays.
+    fn batches(&self, part: u64, most: u64) -> u64 {
+        (self.settings.rays / part).clamp(256, most).div_ceil(self.batch_rays)
     }
 
     /// Where light comes to that knows `importance`, and its flights.
-    fn light(&self, importance: &Importance, round: u64) -> (Light, u64) {
+    fn light(&self, importance: &Importance, round: u64, batches: u64) -> (Light, u64) {
         let trace = |batch: u64| {
-            let watch = Lantern { scene: self.scene, scatters: 0, light: Light::new(self.scene) };
+            let watch = Lantern { scene: self.scene, source: 0, scatters: 0, light: Light::new(self.scene) };
             let (watch, flights) = self.walk(importance, round << 1, watch, |walk| walk.batch(batch, self.quotas));
             (watch.light, flights)
         };
-        let parts: Vec<(Light, u64)> = (0..self.looks()).into_par_iter().map(trace).collect();
+        let parts: Vec<(Light, u64)> = (0..batches).into_par_iter().map(trace).collect();
         let flights = parts.iter().map(|part| part.1).sum();
         (parts.into_iter().fold(Light::new(self.scene), |all, part| all.and(part.0)), flights)
     }
 
     /// What scouts of all detectors sight in about `flights` flights, that go where the light is.
     fn scouted(&self, first: &Light, light: &Light, flights: f64, round: u64) -> Vec<Sighting> {
-        let patches = Patches::learn(self.scene, &light.sightings, &mut Vec::new());
-        let lit = Importance { map: Some(Map { patches, branch: None }), ..Importance::declared(self.scene) };
+        let mut lit = self.lit(light, false);
         let detectors = self.scene.detectors.len();
         let mut sightings = Vec::new();
         for detector in 0..detectors {
-            let came = Directions::learn(light.arrivals[detector].iter().copied());
-            let came = came.filter(|_| light.arrivals[detector].len() >= FEWEST_ARRIVALS);
-            let troops = Troops { detector, sources: shining(self.scene, detector), lit: &lit, came, round };
+            let (sources, came) = (shining(self.scene, detector), lit.came[detector].take());
+            let troops = Troops { detector, sources, lit: &lit.importance, came, round };
             let mut own = self.scouts(&troops, flights / detectors as f64);
             if detectors > 1 {
                 // Every detector is to be known equally well: its sightings count by how much light it will get.
@@ -117,6 +123,31 @@ impl Teacher<'_> {
         }
         sightings.retain(|sighting| sighting.weight > 0.0);
         sightings
+    }
+
+    /// Worth of a branch of every source's light, such that a ray of each will have [`BRANCHES`]; `None` if nothing is worth anything.
+    fn branches(&self, first: &Light, looks: u64, patches: &Patches) -> Option<Vec<f64>> {
+        let mut whole = vec![0.0; self.scene.sources.len()];
+        first.visits.iter().for_each(|visit| whole[visit.source as usize] += visit.worth(patches));
+        let rays = |quota: &Quota| (quota.count * looks) as f64;
+        let branches: Vec<f64> =
+            whole.iter().zip(self.quotas).map(|(whole, quota)| whole / (BRANCHES * rays(quota))).collect();
+        let least = branches.iter().copied().filter(|branch| *branch > 0.0).fold(f64::INFINITY, f64::min);
+        // Light of which nothing is known may be as faint as the faintest.
+        least
+            .is_finite()
+            .then(|| branches.into_iter().map(|branch| if branch > 0.0 { branch } else { least }).collect())
+    }
+
+    /// What the light tells who goes backwards.
+    fn lit(&self, light: &Light, aimless: bool) -> Lit {
+        let patches = Patches::learn(self.scene, &light.sightings, &mut Vec::new());
+        let map = Some(Map { patches, branches: Vec::new() });
+        let known = light.arrivals.iter().map(|arrivals| {
+            let enough = arrivals.len() >= FEWEST_ARRIVALS;
+            Directions::learn(arrivals.iter().copied().filter(|_| enough))
+        });
+        Lit { importance: Importance { map, aimless, ..Importance::declared(self.scene) }, came: known.collect() }
     }
 
     /// Where scouts of a detector come to, that fly about `flights` times in all. They weigh as if there were one.
@@ -228,6 +259,7 @@ impl Light {
 
 /// Light scattered for the first time.
 struct Visit {
+    source: u16,
     part: u32,
     front: bool,
     point: DVec3,
@@ -245,13 +277,14 @@ impl Visit {
 struct Lantern<'a> {
     scene: &'a Scene,
     /// Of the packet in hand.
+    source: u16,
     scatters: u16,
     light: Light,
 }
 
 impl Watch for Lantern<'_> {
     fn follows(&mut self, ancestry: &Ancestry) {
-        self.scatters = ancestry.scatters;
+        (self.source, self.scatters) = (ancestry.source, ancestry.scatters);
     }
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
@@ -260,7 +293,7 @@ impl Watch for Lantern<'_> {
             return;
         }
         if self.scatters == 0 {
-            self.light.visits.push(Visit { part, front, point, flux: flux * fractions[2] });
+            self.light.visits.push(Visit { source: self.source, part, front, point, flux: flux * fractions[2] });
         } else {
             let way = Way::Scattered;
             self.light.sightings.push(Sighting { part, front, point, towards: -direction, weight: flux, way });

@@ -14,7 +14,7 @@ pub mod patches;
 pub mod scout;
 
 use crate::aim::{Target, View};
-use crate::math::Rng;
+use crate::math::{Rng, sampling};
 use crate::scene::Scene;
 use arrayvec::ArrayVec;
 use directions::Directions;
@@ -34,6 +34,8 @@ const DECLARED: f64 = 0.3;
 const ANYWHERE: f64 = 0.05;
 /// Least chance of a branch to live where no scout has been.
 const UNSEEN: f64 = 0.1;
+/// Share of the draws that go evenly into all directions where light is followed backwards.
+const EVENLY: f64 = 0.05;
 /// Most branches of one scatter event.
 const MOST_BRANCHES: f64 = 64.0;
 /// Targets that one mixture can hold: those of the system and those of the map.
@@ -45,18 +47,38 @@ pub struct Importance {
     /// Those of the system, then those that were found.
     pub targets: Vec<Target>,
     pub map: Option<Map>,
+    /// Whether it says nothing of what surfaces aim at.
+    pub aimless: bool,
 }
 
 /// The learned map.
 #[derive(Debug)]
 pub struct Map {
     pub patches: Patches,
-    /// Worth of a whole branch; `None`: every packet goes on in one, whatever it is worth.
-    pub branch: Option<f64>,
+    /// Worth of a whole branch of every source's light; empty: every packet goes on in one, whatever it is worth.
+    pub branches: Vec<f64>,
+}
+
+/// What is known of where light is.
+#[derive(Debug, Default)]
+pub struct Lit {
+    /// Towards where scattered light comes from.
+    pub importance: Importance,
+    /// Directions in which it came to every detector.
+    pub came: Vec<Option<Directions>>,
+}
+
+/// What was learned before the run.
+#[derive(Debug)]
+pub struct Learned {
+    pub importance: Importance,
+    pub lit: Lit,
 }
 
 /// A packet about to be scattered.
 pub struct Occasion {
+    /// Whose light it is.
+    pub source: u16,
     pub part: u32,
     pub front: bool,
     /// Scene coordinates, m.
@@ -80,6 +102,8 @@ pub struct Advice<'a> {
     pub lobes: f64,
     views: ArrayVec<(f64, View), MOST_VIEWS>,
     learned: Option<(f64, &'a Directions)>,
+    /// Share that goes evenly into all directions.
+    evenly: f64,
     /// What a watt that is scattered evenly is worth, in branches; `None`: every branch lives.
     worth: Option<f64>,
 }
@@ -87,7 +111,7 @@ pub struct Advice<'a> {
 impl Advice<'_> {
     /// One branch from the lobes.
     const PLAIN: Advice<'static> =
-        Advice { branches: 1.0, lobes: 1.0, views: ArrayVec::new_const(), learned: None, worth: None };
+        Advice { branches: 1.0, lobes: 1.0, views: ArrayVec::new_const(), learned: None, evenly: 0.0, worth: None };
 
     /// True if nothing but the lobes of the surface is to be drawn from, once.
     pub fn is_plain(&self) -> bool {
@@ -96,7 +120,10 @@ impl Advice<'_> {
 
     /// A unit direction from what `turn`, in lobes..1, falls to.
     pub fn aim(&self, turn: f64, rng: &mut Rng) -> Option<DVec3> {
-        let mut rest = turn - self.lobes;
+        let mut rest = turn - self.lobes - self.evenly;
+        if rest < 0.0 {
+            return Some(sampling::sphere(rng.pair()));
+        }
         for (share, view) in &self.views {
             rest -= share;
             if rest < 0.0 {
@@ -113,7 +140,15 @@ impl Advice<'_> {
     pub fn density(&self, direction: DVec3, lobes: f64) -> f64 {
         let views: f64 = self.views.iter().map(|(share, view)| share * view.density(direction)).sum();
         let learned = self.learned.map_or(0.0, |(share, directions)| share * directions.density(direction));
-        self.lobes * lobes + views + learned
+        self.lobes * lobes + views + learned + self.evenly * 0.25 / PI
+    }
+
+    /// Gives all directions a share: lobes that scatter one way need not be those that light comes the other way by.
+    pub fn spread(&mut self) {
+        self.lobes *= 1.0 - EVENLY;
+        self.views.iter_mut().for_each(|(share, _)| *share *= 1.0 - EVENLY);
+        self.learned = self.learned.map(|(share, directions)| (share * (1.0 - EVENLY), directions));
+        self.evenly = EVENLY;
     }
 
     /// Gives the lobes the share that they are worth: `lobes` is their density at a direction that was aimed, and `aimed` the
@@ -141,12 +176,13 @@ impl Advice<'_> {
 impl Importance {
     /// Only what the system says.
     pub fn declared(scene: &Scene) -> Importance {
-        Importance { targets: scene.targets.clone(), map: None }
+        Importance { targets: scene.targets.clone(), map: None, aimless: false }
     }
 
     /// How to go on.
     pub fn advise(&self, scene: &Scene, occasion: &Occasion) -> Advice<'_> {
-        let declared = &scene.parts[occasion.part as usize].aims[!occasion.front as usize];
+        let aims = &scene.parts[occasion.part as usize].aims[!occasion.front as usize];
+        let declared = if self.aimless { &[][..] } else { aims };
         let whole = (occasion.flux / occasion.start).min(1.0);
         let Some(map) = &self.map else {
             if declared.is_empty() {
@@ -157,7 +193,8 @@ impl Importance {
             return Advice { branches: both * (occasion.flux / occasion.level).min(1.0), ..advice };
         };
         let patch = map.patches.at(occasion.part, occasion.front, occasion.point).filter(|_| occasion.opaque);
-        let worth = map.branch.filter(|_| occasion.opaque).map(|branch| patch.map_or(0.0, |p| p.worth / branch));
+        let branch = map.branches.get(occasion.source as usize).filter(|_| occasion.opaque);
+        let worth = branch.map(|branch| patch.map_or(0.0, |p| p.worth / branch));
         let least = if occasion.broad { 1.0 } else { 1.0 + whole };
         let branches = worth.map_or(1.0, |worth| (occasion.flux * worth).clamp(least, MOST_BRANCHES));
         let lobes = if occasion.broad { BROAD } else { NARROW };
