@@ -93,10 +93,10 @@ impl Grid {
 
     /// The direction at which the hats of an edge of a ring and of a sector have the parts `u` (0..1) of their integrals below it.
     pub fn draw(&self, [ring, sector]: [usize; 2], u: [f64; 2]) -> DVec3 {
-        let (ring, past) = below_hat(&self.square, ring, u[0]);
-        let (sector, arc) = below_hat(&self.phi, sector, u[1]);
-        let (sin, cos) = small_sin_cos(arc - 0.5 * (self.phi[sector + 1] - self.phi[sector]));
-        direction(self.square[ring] + past, DVec2::new(cos, sin).rotate(self.middle[sector]))
+        let (_, square) = below_hat(&self.square, ring, u[0]);
+        let (sector, phi) = below_hat(&self.phi, sector, u[1]);
+        let (sin, cos) = small_sin_cos(phi - 0.5 * (self.phi[sector] + self.phi[sector + 1]));
+        direction(square, DVec2::new(cos, sin).rotate(self.middle[sector]))
     }
 
     /// Where a direction lies, z >= 0.
@@ -152,20 +152,19 @@ fn hats(edges: &[f64], factor: f64) -> Vec<f64> {
 }
 
 /// Where the hat of an edge - 1 there, falling to 0 at its neighbours - has the part `u` (0..1) of its mass below it: the interval, and
-/// the distance from its start. Rising and falling halves with the widths a and b, of x = u (a + b):
+/// the coordinate. With a and b the widths of the intervals before and after the edge e, and c the one of them in which it lies:
 ///
-///     sqrt(x a)   or, where x > a,   b - sqrt((a + b - x) b)
+///     y = u (a + b) - a        e + sign(y) (c - sqrt(c (c - |y|)))
 fn below_hat(edges: &[f64], at: usize, u: f64) -> (usize, f64) {
-    // Away from the ends, where the hat is zero: a draw has a positive density.
-    let u = u.clamp(f64::EPSILON, 1.0 - f64::EPSILON);
+    // Away from the ends, where the hat is zero, by several roundings of y: a draw has a positive density.
+    let u = u.clamp(1e-15, 1.0 - 1e-15);
     let (before, after) = (edges[at.saturating_sub(1)], edges[(at + 1).min(edges.len() - 1)]);
-    let (a, b) = (edges[at] - before, after - edges[at]);
-    let x = u * (a + b);
+    let y = u * (after - before) - (edges[at] - before);
     // Looked up, not branched to: a branch would be guessed wrongly half of the time.
-    let rises = usize::from(x < a);
-    let (part, width) = [(a + b - x, b), (x, a)][rises];
-    let root = (part * width).sqrt();
-    (at - rises, [b - root, root][rises])
+    let interval = at - usize::from(y < 0.0);
+    let width = edges[interval + 1] - edges[interval];
+    let past = width - (width * (width - y.abs())).sqrt();
+    (interval, edges[at] + past.copysign(y))
 }
 
 /// The part of the turn that holds a direction along the surface. With s = y / (|x| + |y|), which rises and falls by 1 in every quarter, the turn
@@ -261,13 +260,14 @@ mod tests {
         let edges = [0.0, 0.1, 0.5, 1.0];
         for at in 0..4 {
             for u in [1e-9, 0.1, 0.25, 0.7, 0.999] {
-                let (interval, past) = below_hat(&edges, at, u);
-                assert!((0.0..=edges[interval + 1] - edges[interval]).contains(&past));
-                assert!((below(edges, at, edges[interval] + past) - u).abs() < 1e-14, "{at} {u}");
+                let (interval, x) = below_hat(&edges, at, u);
+                assert!(x > edges[interval] && x < edges[interval + 1]);
+                assert!((below(edges, at, x) - u).abs() < 1e-14, "{at} {u}");
             }
             for u in [0.0, 1.0] {
-                let (interval, past) = below_hat(&edges, at, u);
-                assert!(past > 0.0 && past < edges[interval + 1] - edges[interval] || at % 3 == 0, "{at} {u}");
+                let (interval, x) = below_hat(&edges, at, u);
+                assert!((interval == at || interval + 1 == at) && x >= edges[interval] && x <= edges[interval + 1]);
+                assert!((x - edges[at]).abs() < edges[interval + 1] - edges[interval], "{at} {u}");
             }
         }
     }
