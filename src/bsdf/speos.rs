@@ -1,4 +1,4 @@
-//! Reader of `.anisotropicbsdf` text files (OPTIS / Ansys Speos), of reflection or of transmission.
+//! Reader of `.anisotropicbsdf` text files (OPTIS / Ansys Speos), of reflection, transmission or both.
 //!
 //! Rows, by the public description "Structure of Anisotropic BSDF Files" (Ansys Speos help):
 //!
@@ -11,19 +11,26 @@
 //!     15  number of wavelengths, then rows: wavelength (nm), scattered fraction (%)
 //!     then for every anisotropy angle and incidence: numbers of theta and phi, a row of phi (deg), rows of theta (deg) and one value per phi
 //!
+//! A file of both has rows 9 to 12 for reflection and again for transmission, rows 13 to 15 with the wavelengths likewise, then all tables
+//! of reflection and all of transmission. So are the files that Ansys writes; the description does not say it (`tests/assets/Gaussian
+//! Fresnel 10 deg.anisotropicbsdf` of github.com/ansys/pyspeos, format v11, where 4 % are reflected and 95 % transmitted).
+//!
 //! Values are pi x BRDF up to a factor; the factor is set, as the description says, so that the TIS at the incidence of row
 //! 13 is the percentage of the spectrum. The specular direction is at phi = 0, theta = angle of incidence; of transmitted light theta
 //! counts from either normal (0 to 90 or 90 to 180 deg). An anisotropy angle is that from the anisotropy vector to the projection of the
 //! ray on the surface. The vector itself (row 6) is not used: a surface says its own lay.
 //!
-//! Refused with a message: binary files, reflection and transmission in one file.
+//! Lobes at 90 deg incidence, where no light arrives, are passed over. Refused with a message: binary files.
 
 use super::reading::{Problem, Rows, shorten};
 use super::tabulated::{Lobe, Table};
 use crate::math::table::linear;
-use std::f64::consts::{FRAC_1_PI, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
-/// Reads the text of a file: a table for every anisotropy angle.
+/// Incidence (rad) above which there is no light: 90 deg to the rounding of decimals.
+const GRAZING: f64 = FRAC_PI_2 - 1e-9;
+
+/// Reads the text of a file: a table for every anisotropy angle, first of reflection, then of transmission.
 pub fn parse(text: &str) -> Result<Vec<Table>, Vec<Problem>> {
     let mut file = Rows::new(text);
     file.speos().map_err(|last| file.all(last))
@@ -37,44 +44,61 @@ struct Kind {
     intensity: bool,
 }
 
+/// Rows 9 to 12: anisotropy angles, deg, and for each the angles of incidence, rad.
+struct Angles {
+    azimuths: Vec<f64>,
+    incidences: Vec<Vec<f64>>,
+}
+
+/// Rows 13 to 15: theta and phi, deg, at which the spectrum was measured, and its rows \[wavelength nm, percent\].
+struct Spectrum {
+    reference: Vec<f64>,
+    percent: Vec<[f64; 2]>,
+}
+
 impl Rows<'_> {
     fn speos(&mut self) -> Result<Vec<Table>, Problem> {
-        let kind = self.header()?;
-        let count = self.count("the number of anisotropy angles")?;
-        let azimuths = self.numbers("the anisotropy angles (deg)", count)?;
-        self.rising(&azimuths, "anisotropy angles", 0.0..360.0 + 1e-9)?;
-        let mut incidences = Vec::new();
-        for _ in &azimuths {
-            incidences.push(self.incidence()?);
+        let kinds = self.header()?;
+        let angles = kinds.iter().map(|_| self.angles()).collect::<Result<Vec<Angles>, Problem>>()?;
+        let spectra = kinds.iter().map(|_| self.spectrum()).collect::<Result<Vec<Spectrum>, Problem>>()?;
+        let mut tables = Vec::new();
+        for ((kind, angles), spectrum) in kinds.into_iter().zip(angles).zip(spectra) {
+            tables.extend(self.tables(kind, &angles, spectrum)?);
         }
-        let reference = self.numbers("the angles (deg) of the spectrum", 2)?;
-        self.next("a description of the spectrum (may be empty)")?;
-        let percent = self.spectrum()?;
+        self.problems.pop().map_or(Ok(tables), Err)
+    }
+
+    /// The tables of light that goes one way; none if a bad number was among them.
+    fn tables(&mut self, kind: Kind, angles: &Angles, spectrum: Spectrum) -> Result<Vec<Table>, Problem> {
         let mut all = Vec::new();
-        for incidence in &incidences {
+        for incidence in &angles.incidences {
             all.push(incidence.iter().map(|&theta| self.lobe(theta, kind)).collect::<Result<Vec<Lobe>, Problem>>()?);
         }
-        if let Some(last) = self.problems.pop() {
-            return Err(last);
+        if !self.problems.is_empty() {
+            return Ok(Vec::new());
         }
-        let tis = |(incidence, lobes): (&Vec<f64>, &Vec<Lobe>)| {
-            linear(incidence, &lobes.iter().map(Lobe::tis).collect::<Vec<_>>(), reference[0].to_radians())
+        all.iter_mut().for_each(|lobes| lobes.retain(|lobe| lobe.incidence() < GRAZING));
+        let tis = |lobes: &Vec<Lobe>| {
+            let (incidence, tis): (Vec<f64>, Vec<f64>) =
+                lobes.iter().map(|lobe| (lobe.incidence(), lobe.tis())).unzip();
+            linear(&incidence, &tis, spectrum.reference[0].to_radians())
         };
-        let at = linear(&azimuths, &incidences.iter().zip(&all).map(tis).collect::<Vec<_>>(), reference[1]);
+        let at = linear(&angles.azimuths, &all.iter().map(tis).collect::<Vec<_>>(), spectrum.reference[1]);
         if at <= 0.0 {
             return Err(self.problem("the table is zero at the incidence of its spectrum", "a BSDF above zero"));
         }
-        let spectrum: Vec<(f64, f64)> = percent.into_iter().map(|[nm, p]| (nm * 1e-9, p / 100.0 / at)).collect();
+        let factors: Vec<(f64, f64)> =
+            spectrum.percent.into_iter().map(|[nm, p]| (nm * 1e-9, p / 100.0 / at)).collect();
         let table = |(lobes, azimuth): (Vec<Lobe>, &f64)| {
-            let table = Table::new(lobes, spectrum.clone())?.turned(azimuth.to_radians());
+            let table = Table::new(lobes, factors.clone())?.turned(azimuth.to_radians());
             Some(if kind.transmitted { table.transmitted() } else { table })
         };
-        let tables: Option<Vec<Table>> = all.into_iter().zip(&azimuths).map(table).collect();
+        let tables: Option<Vec<Table>> = all.into_iter().zip(&angles.azimuths).map(table).collect();
         tables.ok_or_else(|| self.problem("the tables have no order", "rising angles and wavelengths"))
     }
 
-    /// Rows 1 to 8.
-    fn header(&mut self) -> Result<Kind, Problem> {
+    /// Rows 1 to 8: the ways that the light of the file goes.
+    fn header(&mut self) -> Result<Vec<Kind>, Problem> {
         let first = self.next("the header")?;
         if !first.starts_with("OPTIS - Anisotropic BSDF") {
             return Err(
@@ -90,12 +114,13 @@ impl Rows<'_> {
         }
         self.numbers("the anisotropy vector", 3)?;
         let sides = self.next("reflection and transmission")?.split_whitespace().collect::<Vec<_>>();
-        let transmitted = match sides[..] {
-            ["1", "0"] => false,
-            ["0", "1"] => true,
+        let sides: &[bool] = match sides[..] {
+            ["1", "0"] => &[false],
+            ["0", "1"] => &[true],
+            ["1", "1"] => &[false, true],
             _ => {
                 let found = format!("reflection and transmission: found `{}`", shorten(&sides.join(" ")));
-                return Err(self.problem(&found, "`1 0` or `0 1`: one of them in a file"));
+                return Err(self.problem(&found, "`1 0`, `0 1` or `1 1`"));
             }
         };
         let intensity = match self.count("the kind of values: 1 (BSDF) or 0 (intensity)")? {
@@ -103,35 +128,49 @@ impl Rows<'_> {
             1 => false,
             other => return Err(self.problem(&format!("the kind of values is {other}"), "1 (BSDF) or 0 (intensity)")),
         };
-        Ok(Kind { transmitted, intensity })
+        Ok(sides.iter().map(|&transmitted| Kind { transmitted, intensity }).collect())
+    }
+
+    /// Rows 9 to 12.
+    fn angles(&mut self) -> Result<Angles, Problem> {
+        let count = self.count("the number of anisotropy angles")?;
+        let azimuths = self.numbers("the anisotropy angles (deg)", count)?;
+        self.rising(&azimuths, "anisotropy angles", 0.0..360.0 + 1e-9)?;
+        let incidences = azimuths.iter().map(|_| self.incidence()).collect::<Result<_, Problem>>()?;
+        Ok(Angles { azimuths, incidences })
     }
 
     /// Rows 11 and 12, rad.
     fn incidence(&mut self) -> Result<Vec<f64>, Problem> {
         let count = self.count("the number of angles of incidence")?;
         let angles = self.numbers("the angles of incidence (deg)", count)?;
-        self.rising(&angles, "angles of incidence", 0.0..90.0)?;
+        self.rising(&angles, "angles of incidence", 0.0..90.0 + 1e-9)?;
+        if angles[0].to_radians() >= GRAZING {
+            return Err(self.problem("no light arrives at 90 deg alone", "an angle of incidence below 90 deg"));
+        }
         Ok(angles.iter().map(|a| a.to_radians()).collect())
     }
 
-    /// Row 15 and on: \[wavelength nm, percent\].
-    fn spectrum(&mut self) -> Result<Vec<[f64; 2]>, Problem> {
+    /// Rows 13 to 15 and on.
+    fn spectrum(&mut self) -> Result<Spectrum, Problem> {
+        let reference = self.numbers("the angles (deg) of the spectrum", 2)?;
+        self.next("a description of the spectrum (may be empty)")?;
         let count = self.count("the number of wavelengths")?;
         if count == 0 {
             return Err(self.problem("the spectrum is empty", "at least one wavelength"));
         }
-        let mut rows: Vec<[f64; 2]> = Vec::new();
+        let mut percent: Vec<[f64; 2]> = Vec::new();
         for _ in 0..count {
             let row = self.numbers("a wavelength (nm) and a percentage", 2)?;
-            let rises = rows.last().is_none_or(|last| last[0] < row[0]);
+            let rises = percent.last().is_none_or(|last| last[0] < row[0]);
             if !(rises && row[0] > 0.0 && (0.0..=100.0).contains(&row[1])) {
                 return Err(
                     self.problem(&format!("found {} nm, {} %", row[0], row[1]), "rising wavelengths and 0 to 100 %")
                 );
             }
-            rows.push([row[0], row[1]]);
+            percent.push([row[0], row[1]]);
         }
-        Ok(rows)
+        Ok(Spectrum { reference, percent })
     }
 
     /// One table.
@@ -211,7 +250,7 @@ mod tests {
         for (from, to, line, words) in [
             ("OPTIS", "PRITS", 1, "PRITS"),
             ("v8.0\n0", "v8.0\n1", 2, "binary"),
-            ("0\t1\t0\n1\t0", "0\t1\t0\n1\t1", 7, "reflection"),
+            ("0\t1\t0\n1\t0", "0\t1\t0\n0\t0", 7, "reflection"),
             ("0\n1\n1\n0.0", "0\n2\n1\n0.0", 8, "kind"),
             ("1\n0.0\n", "2\n90 0\n", 10, "anisotropy"),
             ("1\n0.0\n", "2\n0 90\n", 13, "angles of incidence"),
@@ -265,6 +304,26 @@ mod tests {
             });
             assert!(a > 0.0 && (a / b - 1.0).abs() < 1e-9, "{a} {b}");
         }
+    }
+
+    /// As Ansys writes it: angles of both, spectra of both, tables of both; incidence goes up to 90 deg.
+    #[test]
+    fn reflection_and_transmission_follow_each_other() {
+        let angles = "1\n0.0\n2\n30 90\n";
+        let lobes = |theta: [u8; 2], value: u8| {
+            format!("2 2\n\t0 360\n{} {value} {value}\n{} {value} {value}\n", theta[0], theta[1])
+        };
+        let tables = [lobes([0, 90], 1), lobes([0, 90], 0), lobes([90, 180], 3), lobes([90, 180], 0)].concat();
+        let spectra = "30 0\nreflection\n1\n550 4\n30 0\ntransmission\n1\n550 95\n";
+        let head = "OPTIS - Anisotropic BSDF surface file v11\n0\n\n0\n\n1\t0\t0\n1\t1\n1\n";
+        let text = format!("{head}{angles}{angles}{spectra}{tables}End of file\n");
+        let tables = parse(&text).expect("two tables");
+        let at = crate::optics::Incidence::in_air(0.5, 550e-9);
+        let model = |table: &Table| crate::bsdf::Tabulated::new(table.clone(), 1.0).expect("below 100 %");
+        let albedo = |table: &Table| crate::bsdf::Bsdf::albedo(&model(table), &at);
+        assert_eq!(tables.iter().map(Table::is_transmitted).collect::<Vec<_>>(), [false, true]);
+        assert!((albedo(&tables[0]) - 0.04).abs() < 1e-12 && (albedo(&tables[1]) - 0.95).abs() < 1e-12);
+        assert!(parse(&text.replace("30 90", "90")).is_err());
     }
 
     #[test]

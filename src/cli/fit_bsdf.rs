@@ -85,8 +85,8 @@ fn read(text: &str, rule: Unmeasured, file: &Path) -> Result<tabulated::Table, E
     match tables.pop() {
         Some(only) if tables.is_empty() => Ok(only),
         _ => {
-            let several = Problem::error("the table depends on the azimuth of the sample");
-            let expected = "one that is the same about its normal: the laws are";
+            let several = Problem::error("there are several tables: by the azimuth of the sample, or of two sides");
+            let expected = "one, of one side, that is the same about the normal: the laws are";
             Err(Error::Input(vec![several.expecting(expected).in_file(file)]))
         }
     }

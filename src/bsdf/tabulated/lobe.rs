@@ -142,6 +142,15 @@ impl Lobe {
         PI * sum / f64::from(RINGS * RINGS)
     }
 
+    /// True if the two sides of the plane of incidence are alike, to the rounding of decimals.
+    pub(super) fn symmetric(&self) -> bool {
+        const ROUNDING: f64 = 1e-9;
+        let last = self.phi.len() - 1;
+        let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
+        let alike = |row: &[f64]| (0..=last).all(|j| near(row[j], row[last - j]));
+        (0..=last).all(|j| near(self.phi[j] + self.phi[last - j], TAU)) && self.value.chunks(last + 1).all(alike)
+    }
+
     /// Smallest step of theta, rad.
     pub(super) fn finest(&self) -> f64 {
         self.theta.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)

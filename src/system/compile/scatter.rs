@@ -4,6 +4,7 @@ use super::Shop;
 use super::media::{self, load};
 use crate::bsdf::contamination::{Deposit, distribution};
 use crate::bsdf::klems::{Face, Matrix};
+use crate::bsdf::tabulated::{Table, TooBright};
 use crate::bsdf::{self, Bsdf, finish};
 use crate::coating::Side;
 use crate::error::{Problem, Span};
@@ -28,9 +29,7 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, side: Side, path: &str
             let both = [[*reflectance, 0.0], [0.0, *transmittance]];
             both.into_iter().filter(|sides| *sides != [0.0; 2]).map(lobe).collect()
         }
-        written::Scatter::Table { file, scale, unmeasured } => {
-            table(shop, file, *scale, *unmeasured, path).into_iter().collect()
-        }
+        written::Scatter::Table { file, scale, unmeasured } => table(shop, file, *scale, *unmeasured, path),
         written::Scatter::Finish(name) => match finish::find(name).and_then(finish::Finish::lobes) {
             Ok(lobes) => lobes,
             Err(problem) => {
@@ -187,31 +186,33 @@ fn axis(about: written::ScatterAxis) -> bsdf::Axis {
     }
 }
 
-fn table(
-    shop: &mut Shop,
-    file: &Path,
-    scale: f64,
-    unmeasured: written::Unmeasured,
-    path: &str,
-) -> Option<Box<dyn Bsdf>> {
+/// The lobes of a file: what is reflected, what is transmitted.
+fn table(shop: &mut Shop, file: &Path, scale: f64, unmeasured: written::Unmeasured, path: &str) -> Vec<Box<dyn Bsdf>> {
     let rule = match unmeasured {
         written::Unmeasured::Zero => bsdf::reading::Unmeasured::Zero,
         written::Unmeasured::Hold => bsdf::reading::Unmeasured::Hold,
     };
-    let mut tables = read(shop, file, path, |text| bsdf::reading::parse(text, rule))?;
+    let Some(tables) = read(shop, file, path, |text| bsdf::reading::parse(text, rule)) else { return Vec::new() };
     tables.iter().for_each(|table| contradictions(shop, table, path));
-    let made: Result<Box<dyn Bsdf>, _> = if tables.len() == 1 {
-        bsdf::Tabulated::new(tables.remove(0), scale).map(|lobe| Box::new(lobe) as Box<dyn Bsdf>)
+    let (passed, reflected): (Vec<Table>, Vec<Table>) = tables.into_iter().partition(Table::is_transmitted);
+    let made: Result<Vec<Box<dyn Bsdf>>, _> = [reflected, passed]
+        .into_iter()
+        .filter(|tables| !tables.is_empty())
+        .map(|tables| measured_lobe(tables, scale))
+        .collect();
+    made.unwrap_or_else(|bright| {
+        shop.fault(path, Problem::error(bright.to_string()));
+        Vec::new()
+    })
+}
+
+/// The lobe of tables (at least one) for light that goes one way.
+fn measured_lobe(mut tables: Vec<Table>, scale: f64) -> Result<Box<dyn Bsdf>, TooBright> {
+    Ok(if tables.len() == 1 {
+        Box::new(bsdf::Tabulated::new(tables.remove(0), scale)?)
     } else {
-        bsdf::Anisotropic::new(tables, scale).map(|lobe| Box::new(lobe) as Box<dyn Bsdf>)
-    };
-    match made {
-        Ok(lobe) => Some(lobe),
-        Err(bright) => {
-            shop.fault(path, Problem::error(bright.to_string()));
-            None
-        }
-    }
+        Box::new(bsdf::Anisotropic::new(tables, scale)?)
+    })
 }
 
 /// What a reader makes of the text of a file; its complaints are noted.
@@ -259,7 +260,7 @@ fn brightest(matrices: &[Matrix]) -> f64 {
 }
 
 /// Says where a file states another TIS than its values integrate to.
-fn contradictions(shop: &mut Shop, table: &bsdf::tabulated::Table, path: &str) {
+fn contradictions(shop: &mut Shop, table: &Table, path: &str) {
     const APART: f64 = 0.05;
     let apart = |[stated, found]: [f64; 2]| (stated - found).abs() > APART * stated.max(found);
     let said: Vec<String> = table
