@@ -50,7 +50,7 @@ pub fn interact<const V: usize, W: Watch>(walk: &mut Walk<V, W>, packet: &mut Pa
         packet.solids = crossed.beyond;
         return true;
     };
-    let meeting = meet(walk.scene, packet, crossed, acting);
+    let meeting = meet(walk, packet, crossed, acting);
     let mut bill = bill(&meeting, packet);
     absorb(walk, packet, &meeting, &bill);
     watch(walk, packet, crossing, &meeting, &bill);
@@ -58,14 +58,20 @@ pub fn interact<const V: usize, W: Watch>(walk: &mut Walk<V, W>, packet: &mut Pa
     branch(walk, packet, crossing, &meeting, &bill)
 }
 
-fn meet<'a, const V: usize>(scene: &'a Scene, packet: &Packet<V>, crossed: Crossed, hit: Hit) -> Meeting<'a, V> {
+fn meet<'a, const V: usize, W: Watch>(
+    walk: &mut Walk<'a, V, W>,
+    packet: &Packet<V>,
+    crossed: Crossed,
+    hit: Hit,
+) -> Meeting<'a, V> {
+    let scene: &'a Scene = walk.scene;
     let normal = if hit.front { hit.normal } else { -hit.normal };
     // x lies in the plane of incidence, so y is the direction of s.
     let frame = Frame::from_z_x(normal, -packet.ray.direction);
     let mut wi = frame.to_local(-packet.ray.direction);
     // At grazing incidence the sign of d.n may round the other way; the hit knows better.
     wi.z = wi.z.max(f64::MIN_POSITIVE);
-    let index = crossed.media.map(|medium| scene.index(medium, packet.wavelength));
+    let index = crossed.media.map(|medium| walk.indices.at(scene, medium, packet.wavelength));
     let surfaces: [&Surface; V] = std::array::from_fn(|lane| scene.surface(hit, lane));
     let at = surfaces.map(|surface| Incidence { wi, wavelength: packet.wavelength, index, lay: lay(surface, &frame) });
     let shares = std::array::from_fn(|lane| surfaces[lane].shares(&at[lane]));

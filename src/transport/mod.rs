@@ -4,6 +4,7 @@ pub mod book;
 mod bulk;
 mod film;
 pub mod importance;
+mod indices;
 mod interaction;
 pub mod paths;
 mod scatter;

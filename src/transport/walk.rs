@@ -4,6 +4,7 @@ use super::book::Book;
 use super::bulk;
 use super::film;
 use super::importance::Importance;
+use super::indices::Indices;
 use super::interaction::interact;
 use super::watch::Watch;
 use crate::detector::{Arrival, Place};
@@ -31,6 +32,8 @@ pub struct Walk<'a, const V: usize, W: Watch> {
     pub waiting: Vec<Packet<V>>,
     /// Flux of the source ray in hand, W.
     pub start: f64,
+    /// Of the media at its wavelength.
+    pub(super) indices: Indices,
 }
 
 /// Which rays of a batch a source has: `first..first + count`.
@@ -80,7 +83,8 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
         book: Book<'a, V>,
         watch: W,
     ) -> Walk<'a, V, W> {
-        Walk { scene, settings, importance, seed: settings.seed, book, watch, waiting: Vec::new(), start: 0.0 }
+        let (seed, waiting, indices) = (settings.seed, Vec::new(), Indices::new(scene));
+        Walk { scene, settings, importance, seed, book, watch, waiting, start: 0.0, indices }
     }
 
     /// Traces every source ray of batch `batch`.
@@ -212,7 +216,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
 
     /// Absorption and optical path over `distance` (m) in a medium.
     fn pass_medium(&mut self, packet: &mut Packet<V>, medium: u16, distance: f64) {
-        let index = self.scene.index(medium, packet.wavelength);
+        let index = self.indices.at(self.scene, medium, packet.wavelength);
         packet.ancestry.optical_path += index.re * distance;
         if index.im > 0.0 {
             let lost = -(-absorption(index, packet.wavelength) * distance).exp_m1();
@@ -229,7 +233,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
             if !watched.side.sees(front) {
                 continue;
             }
-            let index = self.scene.index(self.scene.medium_in(&packet.solids), packet.wavelength);
+            let index = self.indices.at(self.scene, self.scene.medium_in(&packet.solids), packet.wavelength);
             let distance = (point - packet.ray.origin).length();
             let mut here = packet.clone();
             here.ancestry.optical_path += index.re * distance;
