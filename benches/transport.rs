@@ -1,7 +1,7 @@
 //! Transport segments per second on the shipped systems, and closest-hit queries per second on the very same flights: what a
-//! segment costs beyond its query is the physics. One thread, so that the two compare. Source rays per second of one coated lens
-//! in light of every kind of spectrum: a band should cost no more than a line. And one plate, bare and under thirty films.
-//! Requirement: the films cost less than twice the bare face.
+//! segment costs beyond its query is the physics. One thread, so that the two compare. Flights per second between coated lenses in
+//! light of every kind of spectrum, since rays of each have a few per cent more or fewer: a band should cost no more than a line. And
+//! one plate, bare and under thirty films. Requirement: the films cost less than twice the bare face.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
@@ -144,8 +144,9 @@ fn spectra(criterion: &mut Criterion) {
     for (name, spectrum) in SPECTRA {
         let Compiled { scene, settings, .. } = coated(spectrum, RAYS);
         let trace = || pool.install(|| run::<1>(&scene, &settings, &stop, &|_| ()).segments);
-        println!("{name}: {:.2} flights per ray", trace() as f64 / RAYS as f64);
-        group.throughput(Throughput::Elements(RAYS)).sample_size(10);
+        let flights = trace();
+        println!("{name}: {:.2} flights per ray", flights as f64 / RAYS as f64);
+        group.throughput(Throughput::Elements(flights)).sample_size(10);
         group.bench_function(name, |bench| bench.iter(|| black_box(trace())));
     }
     group.finish();

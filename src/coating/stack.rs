@@ -56,7 +56,7 @@ impl Stack {
 
     /// The table of this stack over a band of vacuum wavelengths (m), for light from media of index up to `highest`; `None` if it is
     /// not worth one.
-    pub fn over(&self, band: [f64; 2], highest: impl Fn(f64) -> f64) -> Option<Arc<Band>> {
+    pub fn over(&self, band: [f64; 2], highest: impl Fn(f64) -> f64 + Sync) -> Option<Arc<Band>> {
         let seen = Seen {
             layers: &|wavelength| self.films(wavelength).collect(),
             highest: &highest,

@@ -23,15 +23,18 @@
 //! Source: Macleod, Thin-Film Optical Filters, 4th ed. (2010), sec. 2.7; Born & Wolf, Principles of Optics, 7th ed., sec. 1.6.
 
 mod band;
+mod patch;
 mod table;
+mod zone;
 
 use super::refraction::{normal_component_squared, root};
 use super::{Amplitudes, Split};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-pub use band::{Band, End, Seen};
+pub use band::Band;
 pub use table::Table;
+pub use zone::{End, Seen};
 
 /// Fields beyond this size are scaled down; 1e300 is the largest double.
 const LARGE: f64 = 1e100;

@@ -141,7 +141,7 @@ fn a_table_over_a_band_is_the_stack() {
     let lossy = |i: i32, w: f64| {
         if i == 3 { film(glass(0.2, w), 3.1, 2e-8) } else { film(glass(1.5, w), 1e-3 * f64::from(i), 2e-8) }
     };
-    type Recipe<'a> = &'a dyn Fn(i32, f64) -> Layer;
+    type Recipe<'a> = &'a (dyn Fn(i32, f64) -> Layer + Sync);
     let stacks: [(i32, Recipe); 4] = [(40, &clear), (12, &tabled), (5, &lossy), (1, &clear)];
     for (count, layer) in stacks {
         let layers = |wavelength: f64| (0..count).map(|i| layer(i, wavelength)).collect::<Vec<_>>();
