@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// Sightings that a patch should have.
-const CROWD: usize = 1024;
+const CROWD: usize = 256;
 /// Most targets of a patch.
 pub const MOST_TARGETS: usize = 4;
 /// Share of the light through a lens that is drawn over the whole of it; the rest as learned.
