@@ -36,11 +36,14 @@ pub enum Trace {
     Backward,
 }
 
-/// Whether the run learns first where scattered light counts. The expectation of every number is the same.
+/// Whether the run learns first where scattered light counts, tries what it learned and uses it where it pays. The expectation of
+/// every number is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guidance {
-    Auto,
     #[default]
+    Auto,
+    /// Uses it whether it pays or not.
+    On,
     Off,
 }
 

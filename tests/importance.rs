@@ -41,13 +41,16 @@ fn system(name: &str) -> Compiled {
 fn trace(mut compiled: Compiled, way: Way, rays: u64, seed: u64, threads: usize) -> Results {
     (compiled.settings.rays, compiled.settings.seed) = (rays, seed);
     match way {
-        Way::Plain => {}
-        Way::Learned => compiled.settings.importance = Guidance::Auto,
-        Way::Backward => compiled.settings.trace = Trace::Backward,
+        Way::Plain => compiled.settings.importance = Guidance::Off,
+        Way::Learned => compiled.settings.importance = Guidance::On,
+        Way::Backward => {
+            (compiled.settings.importance, compiled.settings.trace) = (Guidance::Off, Trace::Backward);
+        }
         Way::LearnedBackward => {
-            (compiled.settings.importance, compiled.settings.trace) = (Guidance::Auto, Trace::Backward);
+            (compiled.settings.importance, compiled.settings.trace) = (Guidance::On, Trace::Backward);
         }
         Way::Aimed(centre, half) => {
+            compiled.settings.importance = Guidance::Off;
             let scene = &mut compiled.scene;
             let centre = DVec3::from(centre) - scene.shift;
             let target = Target { label: "box".into(), frame: Frame::WORLD, centre, half: half.into() };
@@ -286,7 +289,7 @@ fn sta_07_aiming_from_a_rough_mirror_is_unbiased() {
 #[test]
 fn learning_where_surfaces_aim() {
     let mut both = system("baffled_tube");
-    both.settings.importance = Guidance::Auto;
+    both.settings.importance = Guidance::On;
     let flux = trace(both, Way::Aimed([0.0, 0.0, 0.2], [0.01, 0.01, 0.0]), 30_000, 5, 2).detectors["fpa"].flux_w;
     assert!((flux.mean - 2.656e-7).abs() < 4.0 * flux.error.hypot(0.010e-7), "{flux:?}");
 }

@@ -7,7 +7,8 @@ use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 use straylight::report;
 use straylight::tally::results::{
-    Axis, DetectorResult, Estimate, LedgerResult, MapKind, MapResult, PathResult, Peak, Results, RunInfo,
+    Axis, DetectorResult, Estimate, GuidanceResult, LedgerResult, MapKind, MapResult, PathResult, Peak, Results,
+    RunInfo,
 };
 
 fn estimate(mean: f64, error: f64) -> Estimate {
@@ -90,6 +91,7 @@ fn detector(flux: Estimate, unit: &str, classes: &[(&str, f64, f64)]) -> Detecto
         peak_w_m2: Peak { mean: 2.4e3, error: 31.0, pixel: [170, 150] },
         unit: unit.into(),
         classes: named(classes),
+        brightest_batch: 0.004,
         sources: BTreeMap::new(),
         unresolved: 0.124,
     }
@@ -214,6 +216,12 @@ fn results() -> Results {
         ]),
         parameters: BTreeMap::from([("hood.length".into(), "120 mm".into())]),
         finishes: vec!["generic black paint: generic, not measured".into()],
+        importance: Some(GuidanceResult {
+            used: true,
+            gain: 12.6,
+            patches: 812,
+            targets: vec!["fpa".into(), "Lens_2.front".into()],
+        }),
         path_grid: 16,
         paths: paths(),
         maps: maps(),

@@ -6,7 +6,7 @@
 use super::measured::{Digits, grouped, measured};
 use super::picture::superscript;
 use super::share::shares;
-use crate::tally::results::{DetectorResult, Estimate, LedgerResult, PathResult, Results};
+use crate::tally::results::{DetectorResult, Estimate, GuidanceResult, LedgerResult, PathResult, Results, RunInfo};
 
 /// The class that a designer meant; everything else is stray.
 pub const SIGNAL: &str = "signal";
@@ -21,6 +21,39 @@ pub fn classes(detector: &DetectorResult) -> Vec<(&str, Estimate, String)> {
     let fluxes: Vec<f64> = rows.iter().map(|row| row.1.mean).collect();
     let shares = shares(&fluxes, fluxes.iter().sum());
     rows.into_iter().zip(shares).map(|((name, flux), share)| (name, flux, share)).collect()
+}
+
+/// Flux by source, W, where there is more than one: names by the number that they begin with, then by letters.
+pub fn sources(detector: &DetectorResult) -> Vec<(&str, Estimate)> {
+    let number = |name: &str| name.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(f64::INFINITY);
+    let mut rows: Vec<_> = detector.sources.iter().map(|(name, flux)| (name.as_str(), *flux)).collect();
+    rows.sort_by(|a, b| number(a.0).total_cmp(&number(b.0)));
+    if rows.len() > 1 { rows } else { Vec::new() }
+}
+
+/// The figure of merit in words; `None` where the error is nothing or everything.
+pub fn merit(detector: &DetectorResult, run: &RunInfo) -> Option<String> {
+    let (relative, cpu) = (detector.flux_w.error / detector.flux_w.mean, run.seconds * run.threads as f64);
+    let known = relative > 0.0 && relative < 1.0 && cpu > 0.0;
+    known.then(|| {
+        let merit = measured(1.0 / (relative * relative * cpu), 0.0);
+        format!(
+            "figure of merit 1 / (relative error² × thread seconds): {merit} /s; brightest batch {:.1} % of the flux",
+            100.0 * detector.brightest_batch
+        )
+    })
+}
+
+/// What the run learned before it began, in words.
+pub fn guidance(guidance: &GuidanceResult) -> String {
+    let targets = guidance.targets.join(", ");
+    let aimed = if targets.is_empty() { String::new() } else { format!(", aims at {targets}") };
+    let taken = if guidance.used {
+        "drawn by what was learned of importance"
+    } else {
+        "drawn plainly: what was learned of importance does not pay"
+    };
+    format!("{taken} ({} patches{aimed}; figure of merit × {:.2} in a trial)", guidance.patches, guidance.gain)
 }
 
 /// Flux of all classes but the signal, W; the error is an upper bound where there is signal, else that of the total.

@@ -23,7 +23,7 @@ pub fn text(results: &Results, run: &RunInfo) -> String {
 fn whole(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     heading(out, results, run)?;
     for (name, detector) in &results.detectors {
-        key_numbers(out, name, detector)?;
+        key_numbers(out, name, detector, run)?;
         paths(out, results, name)?;
     }
     ledger(out, results)?;
@@ -48,13 +48,16 @@ fn heading(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     for finish in &results.finishes {
         writeln!(out, "finish: {finish}")?;
     }
+    if let Some(guidance) = &results.importance {
+        writeln!(out, "{}", digest::guidance(guidance))?;
+    }
     if run.interrupted {
         writeln!(out, "interrupted: what was finished is below")?;
     }
     writeln!(out, "errors are one standard error of the mean")
 }
 
-fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult) -> fmt::Result {
+fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult, run: &RunInfo) -> fmt::Result {
     let flux = match detector.upper_limit_w {
         Some(limit) => below(limit),
         None => estimate(detector.flux_w),
@@ -75,8 +78,14 @@ fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult) -> fmt::
     if let Some(ratio) = digest::stray_to_signal(detector) {
         writeln!(out, "  stray / signal: {} (error: upper bound)", estimate(ratio))?;
     }
+    if let Some(merit) = digest::merit(detector, run) {
+        writeln!(out, "  {merit}")?;
+    }
     for (class, flux, share) in digest::classes(detector) {
         writeln!(out, "  {class:<14} {:>26} W {share:>12} %", estimate(flux))?;
+    }
+    for (source, flux) in digest::sources(detector) {
+        writeln!(out, "  from {source:<14} {:>26} W", estimate(flux))?;
     }
     Ok(())
 }

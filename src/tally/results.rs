@@ -56,12 +56,28 @@ pub struct DetectorResult {
     pub peak_w_m2: Peak,
     /// Unit of the map.
     pub unit: String,
+    /// Share of the flux that the brightest batch brought: where it is large, the error is a guess.
+    pub brightest_batch: f64,
     /// Flux by class, W: "signal", "direct leak", "ghost 1", "scatter 1", ... All rows add up to `flux_w`.
     pub classes: BTreeMap<String, Estimate>,
     /// Flux by source, W.
     pub sources: BTreeMap<String, Estimate>,
     /// Fraction of bins with fewer than 30 contributing source rays among those with any, 0..1.
     pub unresolved: f64,
+}
+
+/// What a run learned of importance before it began.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GuidanceResult {
+    /// Whether the run was drawn by it: where the trial showed a gain.
+    pub used: bool,
+    /// Figure of merit 1 / (relative error^2 x cost in flights) with it over that without, geometric mean over the flux on all detectors by
+    /// class and by source, in a trial before the run.
+    pub gain: f64,
+    /// Patches of surfaces for which it knows what light is worth.
+    pub patches: u64,
+    /// What light is aimed at: detectors, and the last surfaces before them.
+    pub targets: Vec<String>,
 }
 
 /// One row of the path table.
@@ -142,6 +158,8 @@ pub struct Results {
     pub parameters: BTreeMap<String, String>,
     /// What is assumed of the finishes of the built-in library: source, kind and wavelengths, a line each.
     pub finishes: Vec<String>,
+    /// What was learned of importance before the run; null if nothing was.
+    pub importance: Option<GuidanceResult>,
     /// Cells along each side of the grid on which a path's peak is given.
     pub path_grid: usize,
     #[serde(skip)]

@@ -60,7 +60,7 @@ impl<const V: usize> Live<V> {
         let mut entries = Vec::with_capacity(self.touched.len());
         for slot in self.touched.drain(..) {
             let Slot { sum, rays, .. } = std::mem::replace(&mut self.slots[slot as usize], Slot::EMPTY);
-            entries.push(Entry { slot, rays: rays as u64, sum, spread: [0.0; V] });
+            entries.push(Entry { slot, rays: rays as u64, sum, spread: [0.0; V], most: sum });
         }
         self.ray = 0;
         Sums { batches: 1, entries }
@@ -75,6 +75,8 @@ struct Entry<const V: usize> {
     sum: [f64; V],
     /// Sum of squared deviations of the batches from their mean.
     spread: [f64; V],
+    /// Largest sum of a batch.
+    most: [f64; V],
 }
 
 /// Slots summed over whole batches, sparse, in order of slot.
@@ -119,6 +121,11 @@ impl<const V: usize> Sums<V> {
         self.find(slot).map_or(0, |entry| entry.rays)
     }
 
+    /// Share that the brightest batch has of the sum in a slot, in one lane; 0 if nothing was added.
+    pub fn brightest(&self, slot: usize, lane: usize) -> f64 {
+        self.find(slot).filter(|entry| entry.sum[lane] > 0.0).map_or(0.0, |entry| entry.most[lane] / entry.sum[lane])
+    }
+
     fn find(&self, slot: usize) -> Option<&Entry<V>> {
         let found = self.entries.binary_search_by_key(&(slot as u32), |entry| entry.slot);
         found.ok().map(|i| &self.entries[i])
@@ -135,6 +142,7 @@ impl<const V: usize> Entry<V> {
         both.rays += other.map_or(0, |other| other.rays);
         for lane in 0..V {
             let (sum, spread) = other.map_or((0.0, 0.0), |other| (other.sum[lane], other.spread[lane]));
+            both.most[lane] = both.most[lane].max(other.map_or(0.0, |other| other.most[lane]));
             let apart = self.sum[lane] / own - sum / others;
             both.sum[lane] += sum;
             both.spread[lane] += spread + apart * apart * own * others / (own + others);

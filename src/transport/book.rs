@@ -17,6 +17,8 @@ pub struct Book<'a, const V: usize> {
     pub candidates: Candidates,
     /// Flights from event to event.
     pub segments: u64,
+    /// Scatter events that were drawn by importance.
+    pub guided: u64,
     /// What is counted from the other end.
     pub backward: Option<&'a Backward>,
     /// The share of all rays that a unit is, while rays go backwards: they have no ledger.
@@ -25,7 +27,16 @@ pub struct Book<'a, const V: usize> {
 
 impl<'a, const V: usize> Book<'a, V> {
     pub fn new(layout: &'a Layout, live: Live<V>, rows: Option<&'a Rows>) -> Book<'a, V> {
-        Book { layout, live, rows, candidates: Candidates::default(), segments: 0, backward: None, unit: None }
+        Book {
+            layout,
+            live,
+            rows,
+            candidates: Candidates::default(),
+            segments: 0,
+            guided: 0,
+            backward: None,
+            unit: None,
+        }
     }
 
     pub fn emitted(&mut self, flux: [f64; V]) {

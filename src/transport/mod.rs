@@ -9,12 +9,14 @@ mod interaction;
 pub mod paths;
 mod scatter;
 pub mod summary;
+mod trial;
 pub mod walk;
 pub mod watch;
 
 use crate::math::rng::mix;
 use crate::scene::Scene;
 use crate::settings::{Guidance, Settings, Trace};
+use crate::tally::results::GuidanceResult;
 use crate::tally::{Fold, Layout, Live, Sums};
 use backward::Backward;
 use book::Book;
@@ -23,6 +25,7 @@ use paths::{Candidates, Rows};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use trial::trial;
 use walk::{Quota, Walk, quotas};
 use watch::Unwatched;
 
@@ -40,6 +43,8 @@ pub struct Counts<const V: usize> {
     pub segments: u64,
     /// True if it was told to stop.
     pub interrupted: bool,
+    /// What was learned before the run, if anything.
+    pub guidance: Option<GuidanceResult>,
 }
 
 /// How far a run is.
@@ -62,13 +67,23 @@ pub fn run<const V: usize>(
 ) -> Counts<V> {
     let batch_rays = settings.batch_rays();
     let quotas = quotas(scene, batch_rays);
-    let Learned { importance, lit } = match settings.importance {
-        Guidance::Auto => importance::learn(scene, settings, &quotas, batch_rays, stop),
-        Guidance::Off => Learned { importance: Importance::declared(scene), lit: Lit::default() },
+    let declared = Importance::declared(scene);
+    let plain = Plan { scene, settings, importance: &declared, backward: None, quotas: &quotas, batch_rays };
+    let learns = match settings.importance {
+        Guidance::Auto => settings.rays >= FEWEST_TO_LEARN,
+        Guidance::On => true,
+        Guidance::Off => false,
     };
+    let learned = learns.then(|| importance::learn(scene, settings, &quotas, batch_rays, stop));
+    let guidance = learned.as_ref().map(|learned| {
+        let gain = trial::<V>(&plain, &learned.importance, stop);
+        guided(scene, settings, &learned.importance, gain)
+    });
+    let Learned { importance, lit } =
+        learned.unwrap_or_else(|| Learned { importance: Importance::declared(scene), lit: Lit::default() });
+    let importance = if guidance.as_ref().is_some_and(|guidance| guidance.used) { &importance } else { &declared };
     let backward = (settings.trace == Trace::Backward).then(|| Backward::new(scene, lit));
-    let plan =
-        Plan { scene, settings, importance: &importance, backward: backward.as_ref(), quotas: &quotas, batch_rays };
+    let plan = Plan { importance, backward: backward.as_ref(), ..plain };
     let rows = pilot::<V>(&plan, stop);
     let layout = scene.layout(rows.rows.len());
     let pool = Mutex::new(Vec::new());
@@ -103,7 +118,22 @@ pub fn run<const V: usize>(
         }
     }
     let interrupted = stop.load(Ordering::Relaxed) && done < settings.batches();
-    Counts { layout, rows, sums: fold.total(), batch_rays, segments, interrupted }
+    Counts { layout, rows, sums: fold.total(), batch_rays, segments, interrupted, guidance }
+}
+
+/// Runs of fewer source rays learn nothing: it would take longer than they do.
+const FEWEST_TO_LEARN: u64 = 16_384;
+
+/// What is told of what was learned; it is used where the trial says that it pays.
+fn guided(scene: &Scene, settings: &Settings, importance: &Importance, gain: f64) -> GuidanceResult {
+    let declared = scene.targets.len();
+    let wanted = gain > 1.0 || settings.importance == Guidance::On;
+    GuidanceResult {
+        used: wanted && importance.map.is_some(),
+        gain,
+        patches: importance.map.as_ref().map_or(0, |map| map.patches.len() as u64),
+        targets: importance.targets.iter().skip(declared).map(|target| target.label.clone()).collect(),
+    }
 }
 
 /// Batch counts at which the precision is looked at: doublings only, so that looking does not bias the result.

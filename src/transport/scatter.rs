@@ -56,6 +56,7 @@ pub fn plan<'a, const V: usize, W: Watch>(
     if advice.is_plain() && walk.trail.is_none() {
         return Plan { branches: 1, advice, factor, level: 0.0, turn: 0.0 };
     }
+    walk.book.guided += 1;
     if importance.map.is_some() && advice.lobes < 1.0 {
         let turn = advice.lobes + (1.0 - advice.lobes) * packet.rng.uniform();
         if let Some(world) = advice.aim(turn, &mut packet.rng) {

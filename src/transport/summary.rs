@@ -2,6 +2,7 @@
 
 use super::Counts;
 use super::book::coarse_cell;
+use crate::detector::Detector;
 use crate::math::statistics::student95;
 use crate::packet::{Class, Event, Step};
 use crate::scene::Scene;
@@ -13,6 +14,9 @@ use std::collections::BTreeMap;
 
 /// Bins fed by fewer source rays than this are not resolved: their error bar is itself a guess.
 const RESOLVED: u64 = 30;
+
+/// Share of a detector's flux in one batch above which its error is a guess; every batch has 3 % of it at most where all are alike.
+const BRIGHTEST: f64 = 0.25;
 
 /// Lost flux above this fraction of the emitted makes a run not to be trusted.
 const MOST_LOST: f64 = 1e-6;
@@ -32,6 +36,7 @@ pub fn results<const V: usize>(
     let doubts = teller.doubts(&ledger_w);
     let trusted = doubts.is_empty();
     warnings.extend(doubts);
+    warnings.extend(teller.cautions());
     let named = |labels: Vec<&str>, first: usize| {
         let line = |(i, label): (usize, &&str)| (label.to_string(), teller.estimate(first + i));
         labels.iter().enumerate().map(line).filter(|(_, e)| e.mean != 0.0).collect::<BTreeMap<_, _>>()
@@ -61,6 +66,7 @@ pub fn results<const V: usize>(
         inputs,
         parameters: BTreeMap::new(),
         finishes: Vec::new(),
+        importance: counts.guidance.clone(),
         path_grid: PATH_GRID,
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
         maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),
@@ -119,6 +125,26 @@ impl<const V: usize> Teller<'_, V> {
         doubts
     }
 
+    /// Errors that are guesses, in words.
+    fn cautions(&self) -> Vec<String> {
+        let caution = |label: String, slot: usize| {
+            let share = self.sums().brightest(slot, self.lane);
+            let (percent, batches) = (100.0 * share, self.sums().batches);
+            let doubt =
+                format!("one batch of {batches} brought {percent:.0} % of the flux, the error bar cannot be trusted");
+            (share > BRIGHTEST).then(|| format!("{label}: {doubt}: more rays are needed"))
+        };
+        let (layout, sources) = (&self.counts.layout, &self.scene.sources);
+        let of = |(d, detector): (usize, &Detector)| {
+            let whole = caution(detector.label.clone(), layout.detector(d));
+            let apart = sources.iter().enumerate().filter(|_| sources.len() > 1);
+            let apart =
+                apart.map(|(s, source)| (format!("{} from {}", detector.label, source.label), layout.source(d, s)));
+            whole.into_iter().chain(apart.filter_map(|(label, slot)| caution(label, slot))).collect::<Vec<_>>()
+        };
+        self.scene.detectors.iter().enumerate().flat_map(of).collect()
+    }
+
     fn detector(&self, d: usize) -> DetectorResult {
         let layout = &self.counts.layout;
         let slot = layout.detector(d);
@@ -140,6 +166,7 @@ impl<const V: usize> Teller<'_, V> {
             upper_limit_w: (rays == 0).then(|| self.upper()),
             peak_w_m2: self.peak(d),
             unit: self.scene.detectors[d].grid.unit().into(),
+            brightest_batch: self.sums().brightest(slot, self.lane),
             classes,
             sources,
             unresolved,

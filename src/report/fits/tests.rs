@@ -92,6 +92,7 @@ fn file(map: &MapResult, system: &str) -> Vec<u8> {
         trusted: true,
         parameters: Default::default(),
         finishes: Vec::new(),
+        importance: None,
         inputs: Default::default(),
         path_grid: 16,
         paths: Vec::new(),

@@ -141,6 +141,7 @@ fn trust(results: &Results) -> Markup {
             @if warnings > 0 {
                 p.verdict.bad { a href="#warnings" { (warnings) @if warnings == 1 { " warning" } @else { " warnings" } } " to read." }
             }
+            @if let Some(guidance) = &results.importance { p.verdict.plain { "Light was " (digest::guidance(guidance)) "." } }
             p.verdict.plain { "Errors are one standard error of the mean over " (results.batches) " batches; for sums of classes and their ratios, an upper bound." }
         }
     }

@@ -18,7 +18,7 @@ pub fn detector(results: &Results, index: usize, name: &str) -> Markup {
             @if let (Some(map), Some(detector)) = (map, results.detectors.get(name)) { (picture(map, detector)) }
             @if let Some(detector) = results.detectors.get(name).filter(|detector| detector.upper_limit_w.is_none()) {
                 div.pair {
-                    div { (classes(detector)) }
+                    div { (classes(detector)) (sources(detector)) }
                     @if let Some(map) = map { (uncertainty(map)) }
                 }
             }
@@ -145,6 +145,25 @@ fn classes(detector: &DetectorResult) -> Markup {
                     }
                 } }
                 tfoot { tr { th { "Total" } td.right { (estimate(detector.flux_w, "W")) } td.right { "100 %" } td {} } }
+            }
+        }
+    }
+}
+
+fn sources(detector: &DetectorResult) -> Markup {
+    let rows = digest::sources(detector);
+    html! {
+        @if !rows.is_empty() {
+            h3 { "Light by source" }
+            table.classes {
+                thead { tr { th { "Source" } th.right { "Flux" } th.right { "Relative error" } } }
+                tbody { @for (source, flux) in &rows {
+                    tr {
+                        td { (source) }
+                        td.right { (estimate(*flux, "W")) }
+                        td.right { @if flux.mean > 0.0 { (format!("{:.1} %", 100.0 * flux.error / flux.mean)) } @else { "-" } }
+                    }
+                } }
             }
         }
     }

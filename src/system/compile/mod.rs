@@ -213,6 +213,7 @@ fn settings(document: &Document) -> Settings {
         paths: run.paths as usize,
         importance: match run.importance {
             Importance::Auto => Guidance::Auto,
+            Importance::On => Guidance::On,
             Importance::Off => Guidance::Off,
         },
         trace: match run.trace {

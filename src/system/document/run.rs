@@ -50,10 +50,12 @@ pub enum Way {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Importance {
-    /// It learns, draws more of what counts and less of what does not.
-    Auto,
-    /// Light is drawn as it scatters, but for the targets of surfaces.
+    /// It learns, tries what it learned, and draws more of what counts and less of what does not where that pays.
     #[default]
+    Auto,
+    /// The same whether it pays or not.
+    On,
+    /// Light is drawn as it scatters, but for the targets of surfaces.
     Off,
 }
 

@@ -23,8 +23,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Part of the run's flights that scouts may take, all detectors together; least and most.
 const SCOUTED: f64 = 0.1;
 const FLIGHTS: [f64; 2] = [65_536.0, 2_097_152.0];
+/// Flights of the light that looks where it comes to in a later round, in shares of those of scouts.
+const LIT: f64 = 2.0;
 /// Scouts of one task.
-const TROOP: u64 = 512;
+const TROOP: u64 = 256;
 /// Tasks that tell how far scouts go.
 const VANGUARD: u64 = 4;
 /// Part of the run's rays that look where light comes to, and their most.
@@ -55,7 +57,7 @@ pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u
     let teacher = Teacher { scene, settings, quotas, batch_rays, layout: scene.layout(0), stop };
     let declared = Importance::declared(scene);
     let looks = teacher.batches(LOOKS, MOST_LOOKS);
-    let (first, flights) = teacher.light(&declared, 0, looks);
+    let (first, flights) = teacher.light(&declared, 0, looks, f64::INFINITY);
     let looked = (looks * batch_rays) as f64;
     let flights = (SCOUTED * flights as f64 / looked * settings.rays as f64).clamp(FLIGHTS[0], FLIGHTS[1]);
     let (mut light, mut importance) = (None, declared);
@@ -66,12 +68,12 @@ pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u
         let branches = teacher.branches(&first, looks, &patches);
         importance = Importance { targets, map: branches.map(|branches| Map { patches, branches }), aimless: false };
         if round + 1 < ROUNDS.len() {
-            light = Some(teacher.light(&importance, round as u64 + 1, looks).0);
+            light = Some(teacher.light(&importance, round as u64 + 1, looks, LIT * flights).0);
         }
     }
     let lit = || {
         let batches = teacher.batches(LIGHTS, MOST_LIGHTS);
-        teacher.lit(&teacher.light(&importance, ROUNDS.len() as u64, batches).0, true)
+        teacher.lit(&teacher.light(&importance, ROUNDS.len() as u64, batches, flights).0, true)
     };
     let lit = if settings.trace == Trace::Backward { lit() } else { Lit::default() };
     Learned { importance, lit }
@@ -92,16 +94,18 @@ impl Teacher<'_> {
         (self.settings.rays / part).clamp(256, most).div_ceil(self.batch_rays)
     }
 
-    /// Where light comes to that knows `importance`, and its flights.
-    fn light(&self, importance: &Importance, round: u64, batches: u64) -> (Light, u64) {
+    /// Where light comes to that knows `importance`, and its flights: so many batches, fewer where they would fly more than `most` times.
+    fn light(&self, importance: &Importance, round: u64, batches: u64, most: f64) -> (Light, u64) {
         let trace = |batch: u64| {
             let watch = Lantern { scene: self.scene, source: 0, scatters: 0, light: Light::new(self.scene) };
             let (watch, flights) = self.walk(importance, round << 1, watch, |walk| walk.batch(batch, self.quotas));
             (watch.light, flights)
         };
-        let parts: Vec<(Light, u64)> = (0..batches).into_par_iter().map(trace).collect();
-        let flights = parts.iter().map(|part| part.1).sum();
-        (parts.into_iter().fold(Light::new(self.scene), |all, part| all.and(part.0)), flights)
+        let (all, first) = trace(0);
+        let batches = ((most / first.max(1) as f64) as u64).clamp(1, batches);
+        let parts: Vec<(Light, u64)> = (1..batches).into_par_iter().map(trace).collect();
+        let flights = first + parts.iter().map(|part| part.1).sum::<u64>();
+        (parts.into_iter().fold(all, |all, part| all.and(part.0)), flights)
     }
 
     /// What scouts of all detectors sight in about `flights` flights, that go where the light is.
