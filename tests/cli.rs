@@ -311,8 +311,8 @@ fn ended(child: &mut Child) -> Option<i32> {
 #[test]
 fn a_signal_writes_what_is_finished() {
     for (name, code) in [("-INT", 130), ("-TERM", 143)] {
-        // Small batches and no pilot: some are finished soon even on a busy machine.
-        let folder = folder(&GOOD.replace("rays: 2_048", "rays: 2_048, batch: 16, paths: 0"));
+        // Small batches, nothing to learn and no pilot: some are finished soon even on a busy machine.
+        let folder = folder(&GOOD.replace("rays: 2_048", "rays: 2_048, batch: 16, paths: 0, importance: Off"));
         let mut child = endless(folder.path());
         std::thread::sleep(Duration::from_millis(2500));
         assert!(child.try_wait().expect("a child").is_none(), "too early");

@@ -168,6 +168,18 @@ fn the_double_gauss_keeps_its_stray_light() {
 }
 
 #[test]
+fn the_star_tracker_shows_its_curve_over_ten_decades() {
+    let results = hold("star_tracker");
+    let sources = &results["system.ron"].detectors["sensor"].sources;
+    let flux = |angle: &str| sources[angle];
+    for angle in ["10 deg", "21 deg", "30 deg", "40 deg", "50 deg"] {
+        let (near, far) = (flux("1 deg"), flux(angle));
+        assert!(far.mean > 0.0 && far.mean + 4.0 * far.error < 1e-8 * near.mean, "{angle}: {far:?}, 1 deg: {near:?}");
+    }
+    assert!(flux("6 deg").mean > 1e-6 * flux("1 deg").mean, "{:?}", flux("6 deg"));
+}
+
+#[test]
 fn every_shipped_system_is_held_to_its_numbers() {
     let mut shipped = Vec::new();
     for entry in std::fs::read_dir(folder()).expect("systems/ can be listed") {
@@ -189,7 +201,16 @@ fn every_shipped_system_is_held_to_its_numbers() {
     folders.dedup();
     assert_eq!(
         folders,
-        ["baffled_tube", "double_gauss", "fast_lens", "integrating_sphere", "questar", "slab", "triplet"],
+        [
+            "baffled_tube",
+            "double_gauss",
+            "fast_lens",
+            "integrating_sphere",
+            "questar",
+            "slab",
+            "star_tracker",
+            "triplet"
+        ],
         "is there a test for each?"
     );
 }

@@ -36,12 +36,15 @@ pub fn merit(detector: &DetectorResult, run: &RunInfo) -> Option<String> {
     let (relative, cpu) = (detector.flux_w.error / detector.flux_w.mean, run.seconds * run.threads as f64);
     let known = relative > 0.0 && relative < 1.0 && cpu > 0.0;
     known.then(|| {
-        let merit = measured(1.0 / (relative * relative * cpu), 0.0);
-        format!(
-            "figure of merit 1 / (relative error² × thread seconds): {merit} /s; brightest batch {:.1} % of the flux",
-            100.0 * detector.brightest_batch
-        )
+        let merit = rounded(1.0 / (relative * relative * cpu));
+        let brightest = 100.0 * detector.brightest_batch;
+        format!("figure of merit 1 / (relative error² × thread seconds): {merit} /s; brightest batch {brightest:.1} % of the flux")
     })
+}
+
+/// Two digits of a number.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// What the run learned before it began, in words.
@@ -53,7 +56,7 @@ pub fn guidance(guidance: &GuidanceResult) -> String {
     } else {
         "drawn plainly: what was learned of importance does not pay"
     };
-    format!("{taken} ({} patches{aimed}; figure of merit × {:.2} in a trial)", guidance.patches, guidance.gain)
+    format!("{taken} ({} patches{aimed}; figure of merit × {} in a trial)", guidance.patches, rounded(guidance.gain))
 }
 
 /// Flux of all classes but the signal, W; the error is an upper bound where there is signal, else that of the total.

@@ -1,8 +1,8 @@
 //! Whether what was learned pays: a short run each way, by random numbers of its own, before the run.
 //!
 //! The measure is 1 / (R^2 cost), R being the relative error of a number that the run will report, and the cost that of flights and of
-//! scatter events drawn by importance. What is taken decides how light
-//! is drawn, never what it weighs, and was decided before the run proper began: nothing is biased.
+//! scatter events drawn by importance. What is taken decides how light is drawn, never what it weighs, and was decided before the run
+//! proper began: nothing is biased.
 
 use super::Plan;
 use super::book::Book;
@@ -36,6 +36,8 @@ const KNOWN: f64 = 1e-9;
 pub fn trial<const V: usize>(plan: &Plan, learned: &Importance, stop: &AtomicBool) -> f64 {
     let layout = plan.scene.layout(0);
     let size = (plan.settings.rays / PART).clamp(RAYS[0], RAYS[1]) / BATCHES;
+    // Every source has a ray in every batch.
+    let size = size.max(plan.scene.sources.len() as u64);
     let quotas = super::walk::quotas(plan.scene, size);
     let run = |importance: &Importance| {
         let plan = Plan { importance, backward: None, quotas: &quotas, batch_rays: size, ..*plan };

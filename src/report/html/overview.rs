@@ -94,7 +94,7 @@ fn bar(detector: &DetectorResult) -> Markup {
                     (strip(&classes, stray, |class| class != SIGNAL))
                 }
                 figcaption {
-                    @if enlarged { p.note { "Lower strip: stray light alone, × " (crate::report::measured::measured(rounded(total / stray), 0.0)) "." } }
+                    @if enlarged { p.note { "Lower strip: stray light alone, × " (crate::report::measured::measured(digest::rounded(total / stray), 0.0)) "." } }
                     ul.legend {
                         @for (class, _, share) in &classes {
                             li { span.swatch style=(format!("background:{}", tone(class))) {} (class) " " span.share { (share) " %" } }
@@ -104,10 +104,6 @@ fn bar(detector: &DetectorResult) -> Markup {
             }
         }
     }
-}
-
-fn rounded(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 type Class<'a> = (&'a str, crate::tally::results::Estimate, String);
