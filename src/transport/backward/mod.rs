@@ -7,14 +7,14 @@
 //!
 //! n_s being the index where the light starts and tau what the path lets through. Rays start at the detector evenly in étendue, which
 //! no interface changes (L / n^2 and E are invariant), so tau is all that has to be followed: reflectances, transmittances and the
-//! Mueller matrices of the light *as it will go*, transposed ([`reverse`]), and at scatter events
+//! Mueller matrices of the light *as it will go*, transposed (`reverse`), and at scatter events
 //!
 //!     (n'^2 / n^2) f(wi' -> wo') cos(theta') dw'
 //!
 //! with f for light that arrives from w' in a medium of index n' and leaves as the ray came, in n. No reciprocity is asked of the
 //! models (Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, ch. 5).
 //!
-//! Sources are met in two ways ([`connect`]): a *beam* (collimated, or narrow as the Sun) is asked for its light at every scatter event,
+//! Sources are met in two ways (`connect`): a *beam* (collimated, or narrow as the Sun) is asked for its light at every scatter event,
 //! all beams of a run at once, so that one run answers for every field angle; a *plane* that shines into wide angles is met by chance. What cannot
 //! be met - a beam that goes through a lens or off a mirror before it is first scattered, light of a point - is counted by the
 //! rays that go forwards, and they count nothing else ([`Backward::counts`]): every path is counted once.

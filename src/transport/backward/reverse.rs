@@ -52,14 +52,14 @@ pub fn bill<const V: usize>(scene: &Scene, packet: &Packet<V>, crossing: &Crossi
             bill.reflected[lane] = split.reflected.transposed().apply(carried) * reflected;
             if met.refracted.is_none() {
                 // What would pass is reflected beyond the critical angle.
-                let turned = transmit(met, lane, packet_of(meeting, mirrored), split.transmitted.transposed(), carried);
+                let turned = transmit(met, lane, travel(meeting, mirrored), split.transmitted.transposed(), carried);
                 bill.reflected[lane] += turned * transmitted;
             }
         }
         bill.transmitted[lane] = match &beyond {
             Some((local, Some(met))) if met.refracted.is_some() => match met.shares[lane].split {
                 Some(split) => {
-                    let direction = packet_of(meeting, *local);
+                    let direction = travel(meeting, *local);
                     transmit(met, lane, direction, split.transmitted.transposed(), carried)
                         * met.shares[lane].specular[1]
                 }
@@ -74,7 +74,7 @@ pub fn bill<const V: usize>(scene: &Scene, packet: &Packet<V>, crossing: &Crossi
 }
 
 /// Direction of travel of light that arrives from the local direction `from`.
-fn packet_of<const V: usize>(meeting: &Meeting<V>, from: DVec3) -> DVec3 {
+fn travel<const V: usize>(meeting: &Meeting<V>, from: DVec3) -> DVec3 {
     -meeting.frame.to_world(from)
 }
 
