@@ -294,6 +294,15 @@ fn learning_where_surfaces_aim() {
     assert!((flux.mean - 2.656e-7).abs() < 4.0 * flux.error.hypot(0.010e-7), "{flux:?}");
 }
 
+/// From the detector nothing is aimed: rays that go backwards know no targets of the system.
+#[test]
+fn backwards_where_surfaces_aim() {
+    let mut both = system("baffled_tube");
+    both.settings.trace = Trace::Backward;
+    let flux = trace(both, Way::Aimed([0.0, 0.0, 0.2], [0.01, 0.01, 0.0]), 50_000, 5, 2).detectors["fpa"].flux_w;
+    assert!((flux.mean - 2.656e-7).abs() < 4.0 * flux.error.hypot(0.010e-7), "{flux:?}");
+}
+
 #[test]
 fn the_same_bits_on_any_number_of_threads() {
     let once = |threads| trace(system("triplet"), Way::Learned, 3000, 9, threads);

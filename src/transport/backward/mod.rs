@@ -102,7 +102,7 @@ impl Backward {
         &self.lit.importance
     }
 
-    /// Follows `rays` rays of every detector backwards; `book` counts what they find.
+    /// Follows `rays` rays backwards, shared out evenly among the detectors; `book` counts what they find.
     pub fn batch<'a, const V: usize>(
         &'a self,
         scene: &'a Scene,

@@ -66,14 +66,14 @@ pub fn learn(scene: &Scene, settings: &Settings, quotas: &[Quota], batch_rays: u
         let mut targets = scene.targets.clone();
         let patches = Patches::learn(scene, &sightings, &mut targets);
         let branches = teacher.branches(&first, looks, &patches);
-        importance = Importance { targets, map: branches.map(|branches| Map { patches, branches }), aimless: false };
+        importance = Importance { targets, map: branches.map(|branches| Map { patches, branches }), aims: true };
         if round + 1 < ROUNDS.len() {
             light = Some(teacher.light(&importance, round as u64 + 1, looks, LIT * flights).0);
         }
     }
     let lit = || {
         let batches = teacher.batches(LIGHTS, MOST_LIGHTS);
-        teacher.lit(&teacher.light(&importance, ROUNDS.len() as u64, batches, flights).0, true)
+        teacher.lit(&teacher.light(&importance, ROUNDS.len() as u64, batches, flights).0, false)
     };
     let lit = if settings.trace == Trace::Backward { lit() } else { Lit::default() };
     Learned { importance, lit }
@@ -110,7 +110,7 @@ impl Teacher<'_> {
 
     /// What scouts of all detectors sight in about `flights` flights, that go where the light is.
     fn scouted(&self, first: &Light, light: &Light, flights: f64, round: u64) -> Vec<Sighting> {
-        let mut lit = self.lit(light, false);
+        let mut lit = self.lit(light, true);
         let detectors = self.scene.detectors.len();
         let mut sightings = Vec::new();
         for detector in 0..detectors {
@@ -144,14 +144,14 @@ impl Teacher<'_> {
     }
 
     /// What the light tells who goes backwards.
-    fn lit(&self, light: &Light, aimless: bool) -> Lit {
+    fn lit(&self, light: &Light, aims: bool) -> Lit {
         let patches = Patches::learn(self.scene, &light.sightings, &mut Vec::new());
         let map = Some(Map { patches, branches: Vec::new() });
         let known = light.arrivals.iter().map(|arrivals| {
             let enough = arrivals.len() >= FEWEST_ARRIVALS;
             Directions::learn(arrivals.iter().copied().filter(|_| enough))
         });
-        Lit { importance: Importance { map, aimless, ..Importance::declared(self.scene) }, came: known.collect() }
+        Lit { importance: Importance { map, aims, ..Importance::declared(self.scene) }, came: known.collect() }
     }
 
     /// Where scouts of a detector come to, that fly about `flights` times in all. They weigh as if there were one.

@@ -47,8 +47,8 @@ pub struct Importance {
     /// Those of the system, then those that were found.
     pub targets: Vec<Target>,
     pub map: Option<Map>,
-    /// Whether it says nothing of what surfaces aim at.
-    pub aimless: bool,
+    /// Whether what surfaces aim at counts: the first of the targets are those of the system then.
+    pub aims: bool,
 }
 
 /// The learned map.
@@ -176,13 +176,13 @@ impl Advice<'_> {
 impl Importance {
     /// Only what the system says.
     pub fn declared(scene: &Scene) -> Importance {
-        Importance { targets: scene.targets.clone(), map: None, aimless: false }
+        Importance { targets: scene.targets.clone(), map: None, aims: true }
     }
 
     /// How to go on.
     pub fn advise(&self, scene: &Scene, occasion: &Occasion) -> Advice<'_> {
         let aims = &scene.parts[occasion.part as usize].aims[!occasion.front as usize];
-        let declared = if self.aimless { &[][..] } else { aims };
+        let declared = if self.aims { aims } else { &[][..] };
         let whole = (occasion.flux / occasion.start).min(1.0);
         let Some(map) = &self.map else {
             if declared.is_empty() {
