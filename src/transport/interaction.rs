@@ -299,6 +299,7 @@ fn watch<const V: usize, W: Watch>(
             distance: crossing.distance,
             part: meeting.part,
             front: meeting.front,
+            normal: meeting.frame.z,
             angle: wi.x.hypot(wi.y).atan2(wi.z),
             media: meeting.crossed.media,
             flux,

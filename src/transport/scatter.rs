@@ -45,6 +45,7 @@ pub fn plan<'a, const V: usize, W: Watch>(
         source: packet.ancestry.source,
         part: meeting.part,
         front: meeting.front,
+        normal: meeting.frame.z,
         point: packet.ray.origin,
         flux,
         start: walk.start,

@@ -40,7 +40,7 @@ const EVENLY: f64 = 0.3;
 /// Arrivals that tell where light comes from.
 const FEWEST_ARRIVALS: usize = 16;
 /// Branches of a source ray that the map is scaled for.
-const BRANCHES: f64 = 8.0;
+const BRANCHES: f64 = 16.0;
 
 /// Shares of the scouts that go in each round; every round but the first is guided by what the one before taught.
 const ROUNDS: [f64; 3] = [0.15, 0.25, 0.6];
@@ -266,6 +266,7 @@ struct Visit {
     source: u16,
     part: u32,
     front: bool,
+    normal: DVec3,
     point: DVec3,
     /// W
     flux: f64,
@@ -273,7 +274,7 @@ struct Visit {
 
 impl Visit {
     fn worth(&self, patches: &Patches) -> f64 {
-        patches.at(self.part, self.front, self.point).map_or(0.0, |patch| self.flux * patch.worth)
+        patches.at(self.part, self.front, self.normal, self.point).map_or(0.0, |patch| self.flux * patch.worth)
     }
 }
 
@@ -292,15 +293,23 @@ impl Watch for Lantern<'_> {
     }
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
-        let Sight { part, front, point, flux, fractions, direction, .. } = sight();
+        let Sight { part, front, normal, point, distance, flux, fractions, direction, .. } = sight();
         if !self.scene.scatters(part, front) {
             return;
         }
         if self.scatters == 0 {
-            self.light.visits.push(Visit { source: self.source, part, front, point, flux: flux * fractions[2] });
+            self.light.visits.push(Visit {
+                source: self.source,
+                part,
+                front,
+                normal,
+                point,
+                flux: flux * fractions[2],
+            });
         } else {
             let way = Way::Scattered;
-            self.light.sightings.push(Sighting { part, front, point, towards: -direction, weight: flux, way });
+            let towards = -direction;
+            self.light.sightings.push(Sighting { part, front, normal, point, towards, distance, weight: flux, way });
         }
     }
 

@@ -9,9 +9,11 @@
 //! Progress in Nuclear Energy 42, 2003): light is divided where it counts and drawn for where it does not.
 
 pub mod directions;
+pub mod guide;
 mod learn;
 pub mod patches;
 pub mod scout;
+pub mod stones;
 
 use crate::aim::{Target, View};
 use crate::math::{Rng, sampling};
@@ -19,6 +21,7 @@ use crate::scene::Scene;
 use arrayvec::ArrayVec;
 use directions::Directions;
 use glam::DVec3;
+use guide::Guide;
 pub use learn::learn;
 use patches::{MOST_TARGETS, Patches};
 use std::f64::consts::PI;
@@ -81,6 +84,8 @@ pub struct Occasion {
     pub source: u16,
     pub part: u32,
     pub front: bool,
+    /// Of the face, towards where light arrived; unit.
+    pub normal: DVec3,
     /// Scene coordinates, m.
     pub point: DVec3,
     /// Scattered flux, W, and that with which its source ray began.
@@ -101,7 +106,9 @@ pub struct Advice<'a> {
     /// Shares of the draws.
     pub lobes: f64,
     views: ArrayVec<(f64, View), MOST_VIEWS>,
-    learned: Option<(f64, &'a Directions)>,
+    learned: Option<(f64, &'a Guide)>,
+    /// Where it is scattered, m.
+    point: DVec3,
     /// Share that goes evenly into all directions.
     evenly: f64,
     /// What a watt that is scattered evenly is worth, in branches; `None`: every branch lives.
@@ -110,8 +117,15 @@ pub struct Advice<'a> {
 
 impl Advice<'_> {
     /// One branch from the lobes.
-    const PLAIN: Advice<'static> =
-        Advice { branches: 1.0, lobes: 1.0, views: ArrayVec::new_const(), learned: None, evenly: 0.0, worth: None };
+    const PLAIN: Advice<'static> = Advice {
+        branches: 1.0,
+        lobes: 1.0,
+        views: ArrayVec::new_const(),
+        learned: None,
+        point: DVec3::ZERO,
+        evenly: 0.0,
+        worth: None,
+    };
 
     /// True if nothing but the lobes of the surface is to be drawn from, once.
     pub fn is_plain(&self) -> bool {
@@ -131,7 +145,7 @@ impl Advice<'_> {
             }
         }
         match self.learned {
-            Some((_, directions)) => Some(directions.draw(rng.pair())),
+            Some((_, guide)) => guide.draw(self.point, rng),
             None => self.views.last().map(|(_, view)| view.draw(rng)),
         }
     }
@@ -139,7 +153,7 @@ impl Advice<'_> {
     /// Density of the mixture at a unit direction where that of the lobes is `lobes`, 1/sr.
     pub fn density(&self, direction: DVec3, lobes: f64) -> f64 {
         let views: f64 = self.views.iter().map(|(share, view)| share * view.density(direction)).sum();
-        let learned = self.learned.map_or(0.0, |(share, directions)| share * directions.density(direction));
+        let learned = self.learned.map_or(0.0, |(share, guide)| share * guide.density(self.point, direction));
         self.lobes * lobes + views + learned + self.evenly * 0.25 / PI
     }
 
@@ -147,7 +161,7 @@ impl Advice<'_> {
     pub fn spread(&mut self) {
         self.lobes *= 1.0 - EVENLY;
         self.views.iter_mut().for_each(|(share, _)| *share *= 1.0 - EVENLY);
-        self.learned = self.learned.map(|(share, directions)| (share * (1.0 - EVENLY), directions));
+        self.learned = self.learned.map(|(share, guide)| (share * (1.0 - EVENLY), guide));
         self.evenly = EVENLY;
     }
 
@@ -158,7 +172,7 @@ impl Advice<'_> {
         let others = (1.0 - share) / (1.0 - self.lobes);
         self.lobes = share;
         self.views.iter_mut().for_each(|(share, _)| *share *= others);
-        self.learned = self.learned.map(|(share, directions)| (share * others, directions));
+        self.learned = self.learned.map(|(share, guide)| (share * others, guide));
     }
 
     /// The chance of a branch to live, that carries `flux` (W) off at an angle with this cosine to the normal; the mixture has
@@ -192,7 +206,8 @@ impl Importance {
             let both = if advice.lobes < 1.0 { 2.0 } else { 1.0 };
             return Advice { branches: both * (occasion.flux / occasion.level).min(1.0), ..advice };
         };
-        let patch = map.patches.at(occasion.part, occasion.front, occasion.point).filter(|_| occasion.opaque);
+        let patch =
+            map.patches.at(occasion.part, occasion.front, occasion.normal, occasion.point).filter(|_| occasion.opaque);
         let branch = map.branches.get(occasion.source as usize).filter(|_| occasion.opaque);
         let worth = branch.map(|branch| patch.map_or(0.0, |p| p.worth / branch));
         let least = if occasion.broad { 1.0 } else { 1.0 + whole };
@@ -200,7 +215,7 @@ impl Importance {
         let lobes = if occasion.broad { BROAD } else { NARROW };
         let found = patch.into_iter().flat_map(|patch| patch.targets.iter().map(|&(target, share)| (share, target)));
         let wishes = declared.iter().map(|&target| (DECLARED, target)).chain(found);
-        let learned = patch.and_then(|patch| patch.rest.as_ref()).map(|(share, directions)| (*share, directions));
+        let learned = patch.and_then(|patch| patch.rest.as_ref()).map(|(share, guide)| (*share, guide));
         let worth = worth.filter(|_| occasion.broad);
         Advice { branches, worth, ..self.mixed(occasion.point, lobes, wishes, learned) }
     }
@@ -211,7 +226,7 @@ impl Importance {
         point: DVec3,
         lobes: f64,
         wishes: impl Iterator<Item = (f64, u16)>,
-        learned: Option<(f64, &'a Directions)>,
+        learned: Option<(f64, &'a Guide)>,
     ) -> Advice<'a> {
         let seen = |(wish, target): (f64, u16)| Some((wish, self.targets[target as usize].seen(point)?));
         let mut views: ArrayVec<(f64, View), MOST_VIEWS> = wishes.filter_map(seen).take(MOST_VIEWS).collect();
@@ -221,7 +236,7 @@ impl Importance {
         }
         let others = 1.0 - lobes;
         views.iter_mut().for_each(|(share, _)| *share *= others / sum);
-        let learned = learned.map(|(wish, directions)| (others * wish / sum, directions));
-        Advice { lobes, views, learned, ..Advice::PLAIN }
+        let learned = learned.map(|(wish, guide)| (others * wish / sum, guide));
+        Advice { lobes, views, learned, point, ..Advice::PLAIN }
     }
 }

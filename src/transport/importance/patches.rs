@@ -2,9 +2,11 @@
 //!
 //! Light that a detector sends out backwards, uniform in étendue, reaches a patch of area A with the étendue E of all its rays
 //! together. A watt that the patch scatters evenly is then worth M = E / (pi A), and what it is worth along a direction is in
-//! proportion to the étendue that came from there. Sides of parts are divided into patches where samples are many.
+//! proportion to the étendue that came from there. Sides of parts, each in the six ways that they may face, are divided into
+//! patches where samples are many: the edge of a vane may see what its faces do not.
 
 use super::directions::Directions;
+use super::guide::Guide;
 use super::scout::{Sighting, Way};
 use crate::aim::Target;
 use crate::geometry::Frame;
@@ -12,7 +14,7 @@ use crate::math::sampling;
 use crate::scene::Scene;
 use arrayvec::ArrayVec;
 use glam::DVec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 /// Sightings that a patch should have.
@@ -27,7 +29,7 @@ const PIECES: f64 = 65_536.0;
 /// Patches of every side of every part.
 #[derive(Debug, Default)]
 pub struct Patches {
-    /// First node of side `2 part + (0 front, 1 back)`; `NOWHERE`: never seen.
+    /// First node of every [`facing`]; `NOWHERE`: never seen.
     roots: Vec<u32>,
     nodes: Vec<Node>,
     patches: Vec<Patch>,
@@ -54,7 +56,7 @@ pub struct Patch {
     /// Targets, and the share of the worth that goes through each.
     pub targets: ArrayVec<(u16, f64), MOST_TARGETS>,
     /// Towards where the rest of the worth lies, and its share.
-    pub rest: Option<(f64, Directions)>,
+    pub rest: Option<(f64, Guide)>,
 }
 
 /// A piece of area: where, m2.
@@ -64,22 +66,24 @@ impl Patches {
     /// The map from sightings; what they came through is appended to `targets`.
     pub fn learn(scene: &Scene, sightings: &[Sighting], targets: &mut Vec<Target>) -> Patches {
         let mut sides: BTreeMap<usize, Vec<&Sighting>> = BTreeMap::new();
-        sightings.iter().for_each(|s| sides.entry(2 * s.part as usize + !s.front as usize).or_default().push(s));
-        let seen = |part: usize| sides.contains_key(&(2 * part)) || sides.contains_key(&(2 * part + 1));
-        let mut pieces = pieces(scene, &seen);
+        sightings.iter().for_each(|s| sides.entry(facing(s.part, s.front, s.normal)).or_default().push(s));
+        let parts: BTreeSet<u32> = sightings.iter().map(|s| s.part).collect();
+        let mut pieces = pieces(scene, &parts);
         let mut learner = Learner { scene, targets, known: BTreeMap::new(), map: Patches::default() };
-        learner.map.roots = vec![NOWHERE; 2 * scene.parts.len()];
+        learner.map.roots = vec![NOWHERE; 2 * WAYS * scene.parts.len()];
         for (side, mut sightings) in sides {
-            let own = pieces.entry(side / 2).or_default();
+            // Pieces are called by their fronts; their backs face the other way.
+            let front = if side / WAYS % 2 == 0 { side } else { (side - WAYS) ^ 1 };
+            let own = pieces.entry(front).or_default();
             let root = learner.divide(&mut sightings, own);
             learner.map.roots[side] = root;
         }
         learner.map
     }
 
-    /// The patch of a place.
-    pub fn at(&self, part: u32, front: bool, point: DVec3) -> Option<&Patch> {
-        let mut number = *self.roots.get(2 * part as usize + !front as usize)?;
+    /// The patch of a place on a side of a part; `normal` towards where light arrives.
+    pub fn at(&self, part: u32, front: bool, normal: DVec3, point: DVec3) -> Option<&Patch> {
+        let mut number = *self.roots.get(facing(part, front, normal))?;
         if number == NOWHERE {
             return None;
         }
@@ -107,17 +111,26 @@ impl Patches {
     }
 }
 
-/// Triangles of the parts that are `seen`, in pieces of about equal area.
-fn pieces(scene: &Scene, seen: &dyn Fn(usize) -> bool) -> BTreeMap<usize, Vec<Piece>> {
+/// Ways that a face may face.
+const WAYS: usize = 6;
+
+/// The number of a side of a part and the axis that its normal is nearest to: `6 (2 part + (0 front, 1 back)) + 2 axis + (0 along, 1 against)`.
+fn facing(part: u32, front: bool, normal: DVec3) -> usize {
+    let axis = normal.abs().max_position();
+    WAYS * (2 * part as usize + !front as usize) + 2 * axis + (normal[axis] < 0.0) as usize
+}
+
+/// Triangles of `parts` in pieces of about equal area, by the way that their fronts face.
+fn pieces(scene: &Scene, parts: &BTreeSet<u32>) -> BTreeMap<usize, Vec<Piece>> {
     let geometry = &scene.geometry;
-    let mine = || (0..geometry.len() as u32).filter(|&t| seen(scene.part_of[t as usize] as usize));
+    let mine = || (0..geometry.len() as u32).filter(|&t| parts.contains(&scene.part_of[t as usize]));
     let whole: f64 = mine().map(|t| geometry.area(t)).sum();
     let mut pieces: BTreeMap<usize, Vec<Piece>> = BTreeMap::new();
     for number in mine() {
         let triangle = geometry.triangle(number);
         let area = triangle.area();
         let count = (PIECES * area / whole).ceil().clamp(1.0, PIECES);
-        let list = pieces.entry(scene.part_of[number as usize] as usize).or_default();
+        let list = pieces.entry(facing(scene.part_of[number as usize], true, triangle.normal())).or_default();
         for i in 0..count as u32 {
             // The additive recurrence of the plastic number fills the triangle evenly (Roberts, 2018).
             let u = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|a| (0.5 + a * f64::from(i)).fract());
@@ -167,13 +180,14 @@ impl Learner<'_> {
         let share = |way: &Way| if matches!(way, Way::Straight(_)) { 1.0 } else { APERTURE };
         let targets: ArrayVec<(u16, f64), MOST_TARGETS> =
             ways.iter().filter_map(|(way, w)| Some((self.target(*way)?, share(way) * w / whole))).collect();
-        let rest = |s: &&&Sighting| !matches!(s.way, Way::Straight(_));
+        let rest = || sightings.iter().filter(|s| !matches!(s.way, Way::Straight(_)));
         let others = 1.0 - targets.iter().map(|(_, share)| share).sum::<f64>();
-        let directions = Directions::learn(sightings.iter().filter(rest).map(|s| (s.towards, s.weight)));
+        let directions = Directions::learn(rest().map(|s| (s.towards, s.weight)));
+        let places = || rest().map(|s| (s.point + s.distance * s.towards, s.weight)).collect();
         Patch {
             worth: whole / (PI * area.max(least)),
             targets,
-            rest: directions.map(|directions| (others.max(0.0), directions)),
+            rest: directions.map(|directions| (others.max(0.0), Guide::learn(directions, places()))),
         }
     }
 

@@ -33,9 +33,13 @@ pub enum Way {
 pub struct Sighting {
     pub part: u32,
     pub front: bool,
+    /// Of the face, towards where it arrived; unit.
+    pub normal: DVec3,
     pub point: DVec3,
     /// Unit, to where it came from.
     pub towards: DVec3,
+    /// Flight since its last event, m.
+    pub distance: f64,
     /// What it carries: étendue x transmittance, in shares of the detector's.
     pub weight: f64,
     pub way: Way,
@@ -65,8 +69,10 @@ impl Watch for Scout<'_> {
             self.sightings.push(Sighting {
                 part: sight.part,
                 front: sight.front,
+                normal: sight.normal,
                 point: sight.point,
                 towards: -sight.direction,
+                distance: sight.distance,
                 weight: sight.flux,
                 way: self.way,
             });
