@@ -312,3 +312,18 @@ fn the_same_bits_on_any_number_of_threads() {
     assert_eq!(a.ledger_w, b.ledger_w);
     assert_ne!(a.detectors["fpa"].flux_w, trace(system("triplet"), Way::Plain, 3000, 9, 2).detectors["fpa"].flux_w);
 }
+
+/// The 95 % interval of a flux holds what all runs together say in 95 % of them, within 2 %: learned, divided and drawn for.
+#[test]
+#[ignore = "500 runs of each of two systems, some twenty minutes: cargo test --release --test importance -- --ignored"]
+fn intervals_hold_the_truth_with_everything_on() {
+    for (name, rays) in [("baffled_tube", 16_384), ("triplet", 4096)] {
+        let runs: Vec<Results> = (1..=500).map(|seed| trace(system(name), Way::Learned, rays, seed, 2)).collect();
+        let fluxes = || runs.iter().flat_map(|results| results.detectors.values());
+        let truth = fluxes().map(|detector| detector.flux_w.mean).sum::<f64>() / runs.len() as f64;
+        let held = fluxes().filter(|d| (d.flux_w.mean - truth).abs() <= d.interval95_w).count();
+        let share = held as f64 / runs.len() as f64;
+        println!("{name}: {:.1} % of 500 intervals hold {truth:.5e} W", 100.0 * share);
+        assert!((share - 0.95).abs() <= 0.02, "{name}: {share}");
+    }
+}
