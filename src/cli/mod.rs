@@ -79,6 +79,9 @@ pub struct Chosen {
     /// Choose one of the system's `configurations`
     #[arg(long, value_name = "NAME")]
     pub configuration: Option<String>,
+    /// Choose one of the system's `variants`, by itself
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -89,15 +92,21 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 impl Chosen {
     /// Reads a system with its parameters so chosen.
     pub fn read(&self, system: &Path) -> Result<Document, Error> {
-        let choice = Choice { configuration: self.configuration.clone(), set: self.set.clone() };
-        Document::choose(system, &choice)
+        Document::choose(system, &self.choice())
+    }
+
+    /// What is chosen.
+    pub fn choice(&self) -> Choice {
+        let Chosen { set, configuration, variant } = self;
+        Choice { configuration: configuration.clone(), set: set.clone(), variant: variant.clone() }
     }
 
     /// As arguments of a command line.
     pub fn command(&self) -> String {
         let set = self.set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
         let named = self.configuration.iter().map(|name| format!(" --configuration {name:?}"));
-        named.chain(set).collect()
+        let variant = self.variant.iter().map(|name| format!(" --variant {name:?}"));
+        named.chain(variant).chain(set).collect()
     }
 }
 

@@ -87,7 +87,11 @@ pub(super) fn meet<const V: usize>(
     let index = crossed.media.map(|medium| scene.index(medium, wavelength));
     let surfaces: [&Surface; V] = std::array::from_fn(|lane| scene.surface(hit, lane));
     let at = surfaces.map(|surface| Incidence { wi, wavelength, index, lay: lay(surface, &frame) });
-    let shares = std::array::from_fn(|lane| surfaces[lane].shares(&at[lane]));
+    let first = surfaces[0].shares(&at[0]);
+    let shares = std::array::from_fn(|lane| match std::ptr::eq(surfaces[lane], surfaces[0]) {
+        true => first.clone(),
+        false => surfaces[lane].shares(&at[lane]),
+    });
     let refracted = refraction::refract(wi, index[0].re, index[1].re);
     let part = scene.part_of[hit.triangle as usize];
     Meeting { crossed, front: hit.front, part, surfaces, shares, frame, at, refracted }

@@ -65,6 +65,17 @@ pub fn run<const V: usize>(
     stop: &AtomicBool,
     progress: &dyn Fn(&Progress<V>),
 ) -> Counts<V> {
+    batchwise(scene, settings, stop, progress, &mut |_, _, _| ())
+}
+
+/// The same; `batch` is shown every batch before it is folded in, in order.
+pub fn batchwise<const V: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &dyn Fn(&Progress<V>),
+    batch: &mut dyn FnMut(&Layout, &Rows, &Sums<V>),
+) -> Counts<V> {
     let batch_rays = settings.batch_rays();
     let quotas = quotas(scene, batch_rays);
     let declared = Importance::declared(scene);
@@ -101,6 +112,7 @@ pub fn run<const V: usize>(
                 .collect();
             for finished in chunk {
                 let Some((sums, flights)) = finished else { break 'stages };
+                batch(&layout, &rows, &sums);
                 fold.push(sums);
                 segments += flights;
                 done += 1;
@@ -150,8 +162,11 @@ const FEWEST_RAYS: u64 = 100;
 fn precise_enough<const V: usize>(settings: &Settings, layout: &Layout, sums: &Sums<V>) -> bool {
     settings.until.is_some_and(|until| {
         let slot = layout.detector(until.detector);
-        let estimate = sums.estimate(slot, 0);
-        sums.rays(slot) >= FEWEST_RAYS && estimate.error <= until.relative * estimate.mean
+        let known = |lane: usize| {
+            let estimate = sums.estimate(slot, lane);
+            estimate.error <= until.relative * estimate.mean
+        };
+        sums.rays(slot) >= FEWEST_RAYS && (0..V).all(known)
     })
 }
 

@@ -17,6 +17,7 @@ mod scatter;
 mod scatterer;
 mod targets;
 pub mod understanding;
+pub mod variants;
 
 use super::document::{Document, Importance, Way};
 use super::gltf::Node;
