@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// The layers, lowest first. A module may use itself and what stands in the rows above its own; modules that share a row are
 /// blind to each other.
-const LAYERS: [&[&str]; 10] = [
+const LAYERS: [&[&str]; 12] = [
     &["error", "math", "settings"],
     &["geometry", "optics", "prescription"],
     &["film", "import"],
@@ -13,7 +13,9 @@ const LAYERS: [&[&str]; 10] = [
     &["coating", "bsdf", "packet", "source", "detector", "aim"],
     &["surface", "tally"],
     &["scene"],
-    &["system", "transport", "report"],
+    &["system", "transport"],
+    &["study"],
+    &["report"],
     &["lib", "cli"],
     &["main"],
 ];
