@@ -4,6 +4,7 @@ mod against;
 pub mod bsdf;
 pub mod check;
 pub mod coating;
+pub mod compare;
 pub mod export;
 pub mod finishes;
 pub mod fit;
@@ -46,6 +47,8 @@ Example:
 pub enum Verb {
     /// Trace a system and write a report
     Run(run::RunArgs),
+    /// Trace the variants of a system together and say what they change
+    Compare(compare::CompareArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event
