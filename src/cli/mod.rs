@@ -14,6 +14,7 @@ mod optics;
 pub mod ray;
 pub mod run;
 pub mod schema;
+pub mod sensitivity;
 mod stop;
 mod table;
 
@@ -49,6 +50,8 @@ pub enum Verb {
     Run(run::RunArgs),
     /// Trace the variants of a system together and say what they change
     Compare(compare::CompareArgs),
+    /// Say which surface to improve first
+    Sensitivity(sensitivity::SensitivityArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event

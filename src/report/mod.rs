@@ -22,6 +22,7 @@ mod npy;
 mod paths;
 mod picture;
 pub mod problems;
+pub mod sensitivity;
 mod share;
 mod summary;
 mod text;

@@ -161,8 +161,7 @@ pub fn compare(
 fn traced(trace: &Trace, settings: &Settings, stop: &AtomicBool, step: &dyn Fn(u64, u64)) -> Traced {
     match trace.variants.len() {
         1 => lanes::<1>(trace, settings, stop, step),
-        2 => lanes::<2>(trace, settings, stop, step),
-        3..=4 => lanes::<4>(trace, settings, stop, step),
+        2..=4 => lanes::<4>(trace, settings, stop, step),
         5..=8 => lanes::<8>(trace, settings, stop, step),
         _ => lanes::<16>(trace, settings, stop, step),
     }
@@ -243,7 +242,12 @@ fn largest(shifts: &mut Vec<Shift>) {
 }
 
 /// Everything against the baseline.
-fn told(done: Vec<(usize, Trace, Traced)>, names: &[String], mut warnings: Vec<String>, interrupted: bool) -> Comparison {
+fn told(
+    done: Vec<(usize, Trace, Traced)>,
+    names: &[String],
+    mut warnings: Vec<String>,
+    interrupted: bool,
+) -> Comparison {
     let traces = done.len();
     let (batches, batch_rays) = (done[0].2.batches, done[0].2.batch_rays);
     let base: Vec<[Series; 2]> = done[0].2.lanes[0].totals.clone();

@@ -2,4 +2,5 @@
 
 pub mod compare;
 pub mod record;
+pub mod sensitivity;
 pub mod verdict;

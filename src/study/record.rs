@@ -78,8 +78,8 @@ impl<const V: usize> Record<V> {
             self.moments = vec![[Moments::default(); V]; self.slots.len()];
         }
         for (detector, lanes) in self.totals.iter_mut().enumerate() {
-            let [all, signal] =
-                [layout.detector(detector), layout.class(detector, Class::Signal.index())].map(|slot| batch.values(slot));
+            let [all, signal] = [layout.detector(detector), layout.class(detector, Class::Signal.index())]
+                .map(|slot| batch.values(slot));
             for (lane, series) in lanes.iter_mut().enumerate() {
                 series[0].push(all[lane]);
                 series[1].push(signal[lane]);

@@ -56,7 +56,7 @@ fn told(signal: &Change, batches: u64) -> Option<(f64, String)> {
 /// "38.2 ± 0.5": the error has one digit, two if it begins with 1.
 fn number(value: f64, error: f64) -> String {
     if error <= 1e-9 * value.abs() {
-        return format!("{}", format!("{value:.3}").trim_end_matches('0').trim_end_matches('.'));
+        return format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned();
     }
     let first = error.log10().floor();
     let extra = if error / 10f64.powf(first) < 1.95 { 1.0 } else { 0.0 };

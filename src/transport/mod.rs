@@ -15,7 +15,7 @@ pub mod watch;
 
 use crate::math::rng::mix;
 use crate::scene::Scene;
-use crate::settings::{Guidance, Settings, Trace};
+use crate::settings::{Booking, Guidance, Settings, Trace};
 use crate::tally::results::GuidanceResult;
 use crate::tally::{Fold, Layout, Live, Sums};
 use backward::Backward;
@@ -96,7 +96,10 @@ pub fn batchwise<const V: usize>(
     let backward = (settings.trace == Trace::Backward).then(|| Backward::new(scene, lit));
     let plan = Plan { importance, backward: backward.as_ref(), ..plain };
     let rows = pilot::<V>(&plan, stop);
-    let layout = scene.layout(rows.rows.len());
+    let layout = match settings.booking {
+        Booking::Flux => scene.layout(rows.rows.len()),
+        Booking::Events => scene.layout(rows.rows.len()).with_events(),
+    };
     let pool = Mutex::new(Vec::new());
     let mut fold = Fold::default();
     let (mut done, mut segments) = (0, 0);

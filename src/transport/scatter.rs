@@ -2,7 +2,7 @@
 
 use super::backward::reverse;
 use super::importance::{Advice, Occasion};
-use super::interaction::{Bill, Meeting, depart};
+use super::interaction::{Bill, Meeting, depart, each};
 use super::walk::Walk;
 use super::watch::Watch;
 use crate::bsdf::Weighed;
@@ -120,11 +120,7 @@ fn one<const V: usize, W: Watch>(
         surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng)
     };
     let Some(wo) = drawn else { return false };
-    let first = surfaces[0].weigh(&at[0], &shares[0], wo);
-    let weighed: [Weighed; V] = std::array::from_fn(|l| match std::ptr::eq(surfaces[l], surfaces[0]) {
-        true => first,
-        false => surfaces[l].weigh(&at[l], &shares[l], wo),
-    });
+    let weighed: [Weighed; V] = each(surfaces, |l| surfaces[l].weigh(&at[l], &shares[l], wo));
     let lobes: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
     let density = if plan.advice.is_plain() { lobes } else { plan.advice.density(meeting.frame.to_world(wo), lobes) };
     let values = match &walk.trail {

@@ -23,7 +23,8 @@ pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     table.write_record(COLUMNS)?;
     for variant in &comparison.variants {
         for (detector, change) in &variant.detectors {
-            let quantities = [("flux", Some(&change.flux)), ("stray", Some(&change.stray)), ("signal", change.signal.as_ref())];
+            let quantities =
+                [("flux", Some(&change.flux)), ("stray", Some(&change.stray)), ("signal", change.signal.as_ref())];
             for (quantity, change_of) in quantities {
                 let Some(of) = change_of else { continue };
                 let verdict = if quantity == "stray" { change.verdict.as_str() } else { "" };

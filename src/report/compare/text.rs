@@ -26,7 +26,10 @@ fn whole(out: &mut String, comparison: &Comparison, run: &RunInfo) -> fmt::Resul
     if comparison.interrupted {
         writeln!(out, "interrupted: what was finished is below")?;
     }
-    writeln!(out, "errors are one standard error of the mean; those of ratios come from batches paired with the baseline's")?;
+    writeln!(
+        out,
+        "errors are one standard error of the mean; those of ratios come from batches paired with the baseline's"
+    )?;
     let detectors = comparison.variants.first().map(|variant| variant.detectors.keys());
     for detector in detectors.into_iter().flatten() {
         writeln!(out, "\n{detector}")?;
@@ -103,7 +106,8 @@ fn listed(out: &mut String, title: &str, shifts: &[Shift]) -> fmt::Result {
     writeln!(out, "  {title}:")?;
     for shift in shifts.iter().take(LISTED) {
         let amount = measured(shift.difference_w.mean, shift.difference_w.error);
-        let label = if shift.detector.is_empty() { shift.label.clone() } else { super::super::text::shortened(&shift.label) };
+        let label =
+            if shift.detector.is_empty() { shift.label.clone() } else { super::super::text::shortened(&shift.label) };
         writeln!(out, "    {amount:>24} W  {label}")?;
     }
     Ok(())

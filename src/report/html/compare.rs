@@ -1,12 +1,13 @@
 //! compare.html: variants against the baseline on one page, in the order of a reader: verdicts, bars, what changed, how to repeat it.
 
-use super::number::{estimate, minus};
-use super::reproduce;
+use super::number::{estimate, minus, plain};
+use super::{paths, reproduce};
 use crate::report::compare::folders;
 use crate::report::measured::{grouped, measured};
 use crate::study::compare::{Change, Comparison, Shift, VariantResult};
 use crate::tally::results::RunInfo;
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 /// Height of a row of the figure, and widths: names, a bar of the baseline's length at least, numbers; its own units.
 const ROW: f64 = 30.0;
@@ -60,7 +61,8 @@ fn facts(comparison: &Comparison, run: &RunInfo) -> Markup {
 /// Bars of stray light and signal against the baseline, with their errors.
 fn figure(comparison: &Comparison, detector: &str) -> Markup {
     let stray: Vec<Option<&Change>> = comparison.variants.iter().map(|v| Some(&v.detectors[detector].stray)).collect();
-    let signal: Vec<Option<&Change>> = comparison.variants.iter().map(|v| v.detectors[detector].signal.as_ref()).collect();
+    let signal: Vec<Option<&Change>> =
+        comparison.variants.iter().map(|v| v.detectors[detector].signal.as_ref()).collect();
     let names: Vec<&str> = comparison.variants.iter().map(|v| v.name.as_str()).collect();
     let both = signal.iter().any(Option::is_some);
     let panel = BARS + NUMBERS;
@@ -146,15 +148,27 @@ fn section(variant: &VariantResult, folder: &str) -> Markup {
             @if !variant.surfaces.is_empty() {
                 h3 { "What is different" }
                 table.parts {
-                    thead { tr { th { "Surface" } th { "Finish" } } }
-                    tbody { @for (part, finish) in variant.surfaces.iter().take(SURFACES) { tr { td { (part) } td { (finish) } } } }
-                    @if variant.surfaces.len() > SURFACES { tfoot { tr { td colspan="2" { (variant.surfaces.len() - SURFACES) " more" } } } }
+                    thead { tr { th { "Finish" } th { "Surfaces" } } }
+                    tbody { @for (finish, parts) in finishes(variant) { tr { td { (finish) } td { (parts) } } } }
                 }
             }
             (shifts("Paths that changed most", "Path", &variant.paths))
             (shifts("Absorbed, where it changed most", "Surface", &variant.absorbed))
         }
     }
+}
+
+/// Finishes that a variant has otherwise, and the surfaces that have them.
+fn finishes(variant: &VariantResult) -> Vec<(&str, String)> {
+    let mut by_finish: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (part, finish) in &variant.surfaces {
+        by_finish.entry(finish).or_default().push(part);
+    }
+    let listed = |parts: Vec<&str>| {
+        let more = if parts.len() > SURFACES { format!(" and {} more", parts.len() - SURFACES) } else { String::new() };
+        parts[..parts.len().min(SURFACES)].join(", ") + &more
+    };
+    by_finish.into_iter().map(|(finish, parts)| (finish, listed(parts))).collect()
 }
 
 fn shifts(title: &str, column: &str, shifts: &[Shift]) -> Markup {
@@ -164,9 +178,9 @@ fn shifts(title: &str, column: &str, shifts: &[Shift]) -> Markup {
             table.parts {
                 thead { tr { th { (column) } th.right { "Baseline" } th.right { "Variant" } th.right { "Difference" } } }
                 tbody { @for shift in shifts { tr {
-                    td { (shift.label.replace(" > ", " › ")) @if !shift.detector.is_empty() { small { " › " (shift.detector) } } }
-                    td.right { (super::number::plain(shift.baseline_w, "W")) }
-                    td.right { (super::number::plain(shift.variant_w, "W")) }
+                    td { (paths::sequence(&shift.label)) }
+                    td.right { (plain(shift.baseline_w, "W")) }
+                    td.right { (plain(shift.variant_w, "W")) }
                     td.right { (estimate(shift.difference_w, "W")) }
                 } } }
             }

@@ -221,6 +221,7 @@ fn settings(document: &Document) -> Settings {
             Way::Forward => Trace::Forward,
             Way::Backward => Trace::Backward,
         },
+        booking: default.booking,
     }
 }
 

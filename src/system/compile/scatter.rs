@@ -78,7 +78,9 @@ pub fn levelled(shop: &mut Shop, name: &str, written: &written::Scatter, side: S
     let lobes: Vec<Box<dyn Bsdf>> = lobes.into_iter().map(scaled).collect();
     // Every ten degrees, and close to grazing.
     let angles = (0..9).map(|step| 10.0 * f64::from(step)).chain([85.0]);
-    for (wavelength, degrees) in media::light(shop.document, 2).into_iter().flat_map(|w| angles.clone().map(move |a| (w, a))) {
+    for (wavelength, degrees) in
+        media::light(shop.document, 2).into_iter().flat_map(|w| angles.clone().map(move |a| (w, a)))
+    {
         let at = Incidence { lay: DVec2::X, ..Incidence::in_air(degrees.to_radians(), wavelength) };
         let tis: f64 = lobes.iter().map(|lobe| lobe.albedo(&at)).sum();
         if tis > 1.0 + 1e-9 {

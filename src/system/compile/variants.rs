@@ -87,7 +87,7 @@ fn together(group: Vec<Entrant>) -> Result<Vec<Trace>, Error> {
     let Some(mut first) = entrants.next() else { return Ok(Vec::new()) };
     let mut traces = Vec::new();
     let mut variants = vec![first.number];
-    while let Some(entrant) = entrants.next() {
+    for entrant in entrants {
         if variants.len() == LANES {
             let (compiled, assembly) = build(first.document)?;
             let full = std::mem::replace(&mut first.compiled, compiled);
@@ -131,7 +131,9 @@ fn same([a, b]: [&Finish; 2], [left, right]: [&Document; 2]) -> bool {
     };
     // Names of media stand in the stacks of coatings.
     let media = || left.system.media.iter().all(|(name, medium)| right.system.media.get(name) == Some(medium));
-    a == b && a.coating.as_deref().is_none_or(|name| coating(name) && media()) && a.scatter.as_deref().is_none_or(scatter)
+    a == b
+        && a.coating.as_deref().is_none_or(|name| coating(name) && media())
+        && a.scatter.as_deref().is_none_or(scatter)
 }
 
 /// True if two can be lanes of one scene: they differ in nothing but their surfaces.
@@ -159,7 +161,11 @@ fn fitting(a: &Scene, b: &Scene) -> bool {
     let solids = |scene: &Scene| -> Vec<(String, u16, i32)> {
         scene.solids.iter().map(|solid| (solid.label.clone(), solid.medium, solid.priority)).collect()
     };
-    parts && a.parts.len() == b.parts.len() && a.part_of == b.part_of && solids(a) == solids(b) && a.ambient == b.ambient
+    parts
+        && a.parts.len() == b.parts.len()
+        && a.part_of == b.part_of
+        && solids(a) == solids(b)
+        && a.ambient == b.ambient
 }
 
 /// The same media fill the same numbers, wherever light goes.
@@ -169,7 +175,8 @@ fn filled_alike(a: &Entrant, b: &Entrant) -> bool {
         PartKind::Between { back, front } => vec![back, front],
         PartKind::Face(_) | PartKind::Sheet => Vec::new(),
     });
-    let used: BTreeSet<u16> = scene.solids.iter().map(|solid| solid.medium).chain([scene.ambient]).chain(between).collect();
+    let used: BTreeSet<u16> =
+        scene.solids.iter().map(|solid| solid.medium).chain([scene.ambient]).chain(between).collect();
     used.into_iter().all(|medium| {
         let [x, y] = [scene, &b.compiled.scene].map(|s| s.media[medium as usize].label.as_str());
         x == y && a.document.system.media.get(x) == b.document.system.media.get(y)

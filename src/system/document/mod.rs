@@ -124,6 +124,8 @@ struct Indices {
     geometry: Vec<usize>,
     configure: Vec<usize>,
     surfaces: Vec<usize>,
+    /// Which of the surfaces are other variants': they say nothing here.
+    outlines: Vec<usize>,
 }
 
 /// Reads a file that the user names.
@@ -216,13 +218,14 @@ impl Document {
             parameter::substitute(&mut script, &tree, choice, role)?;
         found.extend(problems);
         let mut reader = read::Reader::new(&script);
-        let (mut system, indices) = reader.system(&tree);
+        let (mut system, mut indices) = reader.system(&tree);
         system.level = reader.level(&tree, role);
         let read::Reader { problems, mended, .. } = reader;
         found.extend(problems);
         for (at, surface) in indices.surfaces.iter().zip(&mut system.surfaces) {
             if foreign.contains(at) && !own.contains(at) {
                 *surface = Surface { name: surface.name.take(), ..Surface::new(surface.on.clone()) };
+                indices.outlines.push(*at);
             }
         }
         let (path, sha256) = (path.to_path_buf(), digest(bytes));

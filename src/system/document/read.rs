@@ -82,7 +82,8 @@ impl<'a> Reader<'a> {
             run: self.single(root, "run").unwrap_or_default(),
             level: Level::default(),
         };
-        (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at })
+        let outlines = Vec::new();
+        (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at, outlines })
     }
 
     /// Refuses what is not a system, and sections that are unknown or given twice.

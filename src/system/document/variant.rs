@@ -172,12 +172,12 @@ fn lay(tree: &mut Node, section: &Field) {
         return sections.push(section.clone());
     };
     match (&mut known.value.shape, &section.value.shape) {
-        (Shape::Entries(below), Shape::Entries(above)) => above.iter().for_each(|pair| {
-            match below.iter_mut().find(|(key, _)| key.text() == pair.0.text()) {
+        (Shape::Entries(below), Shape::Entries(above)) => {
+            above.iter().for_each(|pair| match below.iter_mut().find(|(key, _)| key.text() == pair.0.text()) {
                 Some(same) => *same = pair.clone(),
                 None => below.push(pair.clone()),
-            }
-        }),
+            })
+        }
         _ => known.value = section.value.clone(),
     }
 }
@@ -223,6 +223,7 @@ impl Reader<'_> {
                 }
                 _ if node.name.as_deref() == Some("Bracket") => self.bracket(root, node, &path),
                 Shape::Fields(fields) if node.name.is_none() => self.sections_of(root, fields, &path),
+                Shape::Items(items) if node.name.is_none() && items.is_empty() => {}
                 _ => {
                     let problem = Problem::error("this is no variant");
                     let expected = "sections in parentheses, `(coatings: {..}, surfaces: [..])`, or `Bracket`";
