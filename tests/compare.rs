@@ -299,7 +299,7 @@ fn shipped_studies_come_to_their_verdicts() {
         let stray = &variant.detectors["image"].stray;
         println!("{file} {name}: {:?}; {}", stray.ratio, variant.detectors["image"].verdict);
         let ratio = stray.ratio.expect("stray light");
-        assert!(wanted.contains(&ratio.mean) && ratio.error < 0.2 * ratio.mean, "{file}: {ratio:?}");
+        assert!(wanted.contains(&ratio.mean) && ratio.error < 0.4 * ratio.mean, "{file}: {ratio:?}");
     }
 }
 

@@ -169,7 +169,7 @@ fn traced(trace: &Trace, settings: &Settings, stop: &AtomicBool, step: &dyn Fn(u
 
 fn lanes<const V: usize>(trace: &Trace, settings: &Settings, stop: &AtomicBool, step: &dyn Fn(u64, u64)) -> Traced {
     let scene = &trace.compiled.scene;
-    let mut record = Record::<V>::new(scene.detectors.len());
+    let mut record = Record::<V>::new(scene.detectors.len(), trace.reference());
     let progress = |p: &crate::transport::Progress<V>| step(p.batches, p.of);
     let counts = batchwise::<V>(scene, settings, stop, &progress, &mut |layout, rows, batch| {
         record.take(layout, rows.rows.len(), layout.absorbers(), batch);
@@ -183,7 +183,7 @@ fn lanes<const V: usize>(trace: &Trace, settings: &Settings, stop: &AtomicBool, 
         totals: (0..scene.detectors.len()).map(|d| record.totals(d, lane).clone()).collect(),
         paths: paths(trace, &counts, &record, lane),
         absorbed: absorbed(trace, &counts, &record, lane),
-        surfaces: differences(scene, lane),
+        surfaces: differences(trace, lane),
     };
     Traced {
         batches: counts.sums.batches,
@@ -194,7 +194,7 @@ fn lanes<const V: usize>(trace: &Trace, settings: &Settings, stop: &AtomicBool, 
     }
 }
 
-/// Paths whose flux is another in a lane than in the first.
+/// Paths whose flux is another in a lane than in the reference.
 fn paths<const V: usize>(trace: &Trace, counts: &Counts<V>, record: &Record<V>, lane: usize) -> Vec<Shift> {
     let scene = &trace.compiled.scene;
     let shift = |(index, row): (usize, &crate::transport::paths::Row)| {
@@ -202,7 +202,7 @@ fn paths<const V: usize>(trace: &Trace, counts: &Counts<V>, record: &Record<V>, 
         Shift {
             detector: scene.detectors[row.detector].label.clone(),
             label: summary::sequence(scene, row),
-            baseline_w: counts.sums.estimate(slot, 0).mean,
+            baseline_w: counts.sums.estimate(slot, trace.reference()).mean,
             variant_w: counts.sums.estimate(slot, lane).mean,
             difference_w: record.change(slot, lane),
         }
@@ -216,7 +216,7 @@ fn paths<const V: usize>(trace: &Trace, counts: &Counts<V>, record: &Record<V>, 
     listed
 }
 
-/// Parts and media that absorb another flux in a lane than in the first.
+/// Parts and media that absorb another flux in a lane than in the reference.
 fn absorbed<const V: usize>(trace: &Trace, counts: &Counts<V>, record: &Record<V>, lane: usize) -> Vec<Shift> {
     let scene = &trace.compiled.scene;
     let media = scene.media.iter().map(|filling| format!("medium {}", filling.label));
@@ -224,7 +224,7 @@ fn absorbed<const V: usize>(trace: &Trace, counts: &Counts<V>, record: &Record<V
     let shift = |(slot, label): (usize, String)| Shift {
         detector: String::new(),
         label,
-        baseline_w: counts.sums.estimate(slot, 0).mean,
+        baseline_w: counts.sums.estimate(slot, trace.reference()).mean,
         variant_w: counts.sums.estimate(slot, lane).mean,
         difference_w: record.change(slot, lane),
     };
@@ -250,15 +250,16 @@ fn told(
 ) -> Comparison {
     let traces = done.len();
     let (batches, batch_rays) = (done[0].2.batches, done[0].2.batch_rays);
-    let base: Vec<[Series; 2]> = done[0].2.lanes[0].totals.clone();
-    let (results, first) = (done[0].2.lanes[0].results.clone(), done[0].1.compiled.parameters.clone());
+    let baseline = &done[0].2.lanes[done[0].1.reference()];
+    let (base, results) = (baseline.totals.clone(), baseline.results.clone());
+    let first = done[0].1.compiled.parameters.clone();
     let (mut variants, mut inputs, mut segments) = (Vec::new(), BTreeMap::new(), 0);
     for (number, trace, traced) in done {
         segments += traced.segments;
-        inputs.extend(trace.compiled.inputs);
+        inputs.extend(trace.compiled.inputs.clone());
         // The baseline is in every trace that shares its shapes; there it is what the other lanes are compared with.
-        let shares = trace.variants.first() == Some(&0);
-        let own = if shares { traced.lanes[0].totals.clone() } else { base.clone() };
+        let shares = trace.variants.contains(&0);
+        let own = if shares { traced.lanes[trace.reference()].totals.clone() } else { base.clone() };
         for (lane, variant) in traced.lanes.into_iter().zip(trace.variants) {
             if variant == 0 && number > 0 {
                 continue;

@@ -45,7 +45,7 @@ pub fn ratio(x: &[f64], y: &[f64]) -> Option<Estimate> {
     Some(Estimate { mean: ratio, error: error / mx })
 }
 
-/// Difference of a slot between a lane and the first, summed over batches.
+/// Difference of a slot between a lane and the reference, summed over batches.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
     sum: f64,
@@ -61,14 +61,16 @@ pub struct Record<const V: usize> {
     slots: Vec<usize>,
     moments: Vec<[Moments; V]>,
     batches: u64,
+    /// Lane that the others are compared with.
+    reference: usize,
 }
 
 impl<const V: usize> Record<V> {
-    /// Books for so many detectors.
-    pub fn new(detectors: usize) -> Record<V> {
+    /// Books for so many detectors; lanes are compared with the lane `reference`.
+    pub fn new(detectors: usize, reference: usize) -> Record<V> {
         let empty = || std::array::from_fn(|_| [Series::new(), Series::new()]);
         let totals = (0..detectors).map(|_| empty()).collect();
-        Record { totals, slots: Vec::new(), moments: Vec::new(), batches: 0 }
+        Record { totals, slots: Vec::new(), moments: Vec::new(), batches: 0, reference }
     }
 
     /// Takes a batch down.
@@ -88,7 +90,7 @@ impl<const V: usize> Record<V> {
         for (&slot, moments) in self.slots.iter().zip(&mut self.moments) {
             let values = batch.values(slot);
             for (value, moments) in values.iter().zip(moments) {
-                let apart = value - values[0];
+                let apart = value - values[self.reference];
                 moments.sum += apart;
                 moments.squares += apart * apart;
             }
@@ -101,7 +103,7 @@ impl<const V: usize> Record<V> {
         &self.totals[detector][lane]
     }
 
-    /// How much more a slot that is compared holds in a lane than in the first.
+    /// How much more a slot that is compared holds in a lane than in the reference.
     pub fn change(&self, slot: usize, lane: usize) -> Estimate {
         let Some(at) = self.slots.iter().position(|known| *known == slot) else { return Estimate::default() };
         let (Moments { sum, squares }, n) = (self.moments[at][lane], self.batches as f64);

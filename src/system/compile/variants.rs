@@ -4,10 +4,12 @@ use super::assembly::Assembly;
 use super::models::Finish;
 use super::{Compiled, build};
 use crate::error::{Error, Problem};
-use crate::scene::{PartKind, Scene};
-use crate::surface::Surface;
+use crate::optics::Incidence;
+use crate::scene::{Part, PartKind, Scene};
 use crate::system::document::Document;
+use glam::DVec2;
 use std::collections::BTreeSet;
+use std::f64::consts::FRAC_PI_4;
 
 /// Most variants of one trace.
 pub const LANES: usize = 16;
@@ -15,16 +17,46 @@ pub const LANES: usize = 16;
 /// Variants that are traced together.
 #[derive(Debug)]
 pub struct Trace {
-    /// What the first lane is compiled to; the surfaces of its parts have as many lanes as there are `variants`.
+    /// The surfaces of the parts of its scene have as many lanes as there are `variants`.
     pub compiled: Compiled,
-    /// Which variant each lane is; 0 is the baseline.
+    /// Which variant each lane is; 0 is the baseline. The first lane is that which scatters most: what a run learns of importance, it
+    /// learns of the first lane, and light that counts in one lane must not be dropped because it does not in another.
     pub variants: Vec<usize>,
+}
+
+impl Trace {
+    fn new(mut compiled: Compiled, mut variants: Vec<usize>) -> Trace {
+        let scene = &mut compiled.scene;
+        let brightness: Vec<f64> = (0..variants.len()).map(|lane| scattered(scene, lane)).collect();
+        // Of lanes that are alike the first, which is the baseline where it is there.
+        let brightest = (0..variants.len()).rev().max_by(|&a, &b| brightness[a].total_cmp(&brightness[b])).unwrap_or(0);
+        scene
+            .parts
+            .iter_mut()
+            .filter(|part| brightest < part.surface.len())
+            .for_each(|part| part.surface.swap(0, brightest));
+        variants.swap(0, brightest);
+        Trace { compiled, variants }
+    }
+
+    /// The lane that the others are compared with: the baseline, or the first of variants that are traced without it.
+    pub fn reference(&self) -> usize {
+        self.variants.iter().position(|variant| *variant == 0).unwrap_or(0)
+    }
+}
+
+/// TIS of the sides of all parts together in a lane, at 45 deg and a wavelength of the light.
+fn scattered(scene: &Scene, lane: usize) -> f64 {
+    let wavelength = scene.sources.first().map_or(550e-9, |source| source.spectrum.range()[0]);
+    let at = Incidence { lay: DVec2::X, ..Incidence::in_air(FRAC_PI_4, wavelength) };
+    let sides = scene.parts.iter().flat_map(|part| part.surface[lane.min(part.surface.len() - 1)]);
+    sides.map(|side| scene.surfaces[side as usize].albedo(&at).iter().sum::<f64>()).sum()
 }
 
 /// Everything that is compared.
 #[derive(Debug)]
 pub struct Lineup {
-    /// The first trace has the baseline as its first lane. So has every other that shares its shapes and indices.
+    /// The first trace has the baseline among its lanes. So has every other that shares its shapes and indices.
     pub traces: Vec<Trace>,
     /// What the author should look at, each once.
     pub warnings: Vec<Problem>,
@@ -92,12 +124,12 @@ fn together(group: Vec<Entrant>) -> Result<Vec<Trace>, Error> {
             let (compiled, assembly) = build(first.document)?;
             let full = std::mem::replace(&mut first.compiled, compiled);
             first.assembly = assembly;
-            traces.push(Trace { compiled: full, variants: std::mem::replace(&mut variants, vec![first.number]) });
+            traces.push(Trace::new(full, std::mem::replace(&mut variants, vec![first.number])));
         }
         variants.push(entrant.number);
         add(&mut first, entrant);
     }
-    traces.push(Trace { compiled: first.compiled, variants });
+    traces.push(Trace::new(first.compiled, variants));
     Ok(traces)
 }
 
@@ -183,13 +215,13 @@ fn filled_alike(a: &Entrant, b: &Entrant) -> bool {
     })
 }
 
-/// What a lane does otherwise than the first, for people: part, side and the finish there, each part once.
-pub fn differences(scene: &Scene, lane: usize) -> Vec<(String, String)> {
-    let label = |surface: u32| -> &Surface { &scene.surfaces[surface as usize] };
-    let part = |part: &crate::scene::Part| {
-        let (old, new) = (part.surface[0], *part.surface.get(lane)?);
+/// What a lane does otherwise than the reference, for people: part and the finish there, each part once.
+pub fn differences(trace: &Trace, lane: usize) -> Vec<(String, String)> {
+    let scene = &trace.compiled.scene;
+    let part = |part: &Part| {
+        let (old, new) = (*part.surface.get(trace.reference())?, *part.surface.get(lane)?);
         let side = (0..2).find(|&side| old[side] != new[side])?;
-        Some((part.label.clone(), label(new[side]).label.clone()))
+        Some((part.label.clone(), scene.surfaces[new[side] as usize].label.clone()))
     };
     scene.parts.iter().filter_map(part).collect()
 }

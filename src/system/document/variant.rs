@@ -119,7 +119,8 @@ pub fn cast(root: Node, role: Role) -> Result<Cast, Error> {
         Role::Variant(name) => Some(all.iter().find(|actor| actor.name == name).ok_or_else(|| unknown(name, &all))?),
     };
     let mut tree = root.clone();
-    if let Some(Shape::Fields(sections)) = chosen.map(|actor| &actor.node.shape) {
+    let said = chosen.filter(|actor| actor.end.is_none());
+    if let Some(Shape::Fields(sections)) = said.map(|actor| &actor.node.shape) {
         sections.iter().filter(|section| section.name != "surfaces").for_each(|section| lay(&mut tree, section));
     }
     let first = items(root.child("surfaces")).len();
