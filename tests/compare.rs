@@ -170,6 +170,8 @@ fn events_on_the_way_are_the_derivatives_of_stray_light() {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("system.ron");
     let text = CAMERA.replace("\"face\": Ideal(reflectance: 0.04, transmittance: 0.96)", baseline);
+    // Without refraction nothing is totally reflected, which no coating makes.
+    let text = text.replace("Constant(n: 1.5)", "Constant(n: 1)");
     std::fs::write(&path, text.replace("VARIANTS", &variants.join(", ").replace("0.96)", "0.94)"))).expect("written");
     let documents = Document::lineup(&path, &Choice::default()).expect("a system");
     let comparison = compared(&documents, 8);
@@ -278,29 +280,34 @@ fn a_system_with_variants_is_also_a_system() {
     assert!(error.contains("did you mean \"black wall\"?"), "{error}");
 }
 
-/// The studies that ship with the project name what they are there to show.
+/// What a study that ships with the project says of a variant: stray light over that of the baseline.
+fn shipped(file: &str, name: &str, rays: u64) -> Estimate {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("systems").join(file);
+    let documents = Document::lineup(&path, &Choice::default()).expect("ships with the project");
+    let mut lineup = lineup(&documents).expect("compiles");
+    lineup.traces[0].compiled.settings.rays = rays;
+    let names: Vec<String> =
+        std::iter::once("baseline".to_owned()).chain(documents[0].variants.iter().cloned()).collect();
+    let comparison = traced(lineup, &names, 1);
+    assert_eq!(comparison.traces, 1, "{file}");
+    let variant = comparison.variants.iter().find(|variant| variant.name == name).expect("a variant");
+    let found = &variant.detectors["image"];
+    println!("{file} {name}: {:?}; {}", found.stray.ratio, found.verdict);
+    found.stray.ratio.expect("stray light")
+}
+
 #[test]
-fn shipped_studies_come_to_their_verdicts() {
-    let systems = Path::new(env!("CARGO_MANIFEST_DIR")).join("systems");
-    let cases = [
-        ("double_gauss/coatings.ron", "three layers on all", 0.0..0.3),
-        // Light that is scattered twice at 3 % and at 5 %, and some that is scattered more often.
-        ("questar/finishes.ron", "diffuse black anodize", 2.2..3.6),
-    ];
-    for (file, name, wanted) in cases {
-        let documents = Document::lineup(&systems.join(file), &Choice::default()).expect("ships with the project");
-        let mut lineup = lineup(&documents).expect("compiles");
-        lineup.traces[0].compiled.settings.rays = 8192;
-        let names: Vec<String> =
-            std::iter::once("baseline".to_owned()).chain(documents[0].variants.iter().cloned()).collect();
-        let comparison = traced(lineup, &names, 1);
-        assert_eq!(comparison.traces, 1, "{file}");
-        let variant = comparison.variants.iter().find(|variant| variant.name == name).expect("a variant");
-        let stray = &variant.detectors["image"].stray;
-        println!("{file} {name}: {:?}; {}", stray.ratio, variant.detectors["image"].verdict);
-        let ratio = stray.ratio.expect("stray light");
-        assert!(wanted.contains(&ratio.mean) && ratio.error < 0.4 * ratio.mean, "{file}: {ratio:?}");
-    }
+fn three_layers_leave_little_of_the_ghosts_of_the_double_gauss() {
+    let ratio = shipped("double_gauss/coatings.ron", "three layers on all", 8192);
+    assert!(ratio.mean < 0.3 && ratio.error < 0.1, "{ratio:?}");
+}
+
+/// Light that is scattered once at 3 % and at 5 %, and some that is scattered more often.
+#[test]
+#[ignore = "minutes; cargo test --release --test compare -- --ignored"]
+fn black_anodize_scatters_as_its_reflectance_says_in_the_questar() {
+    let ratio = shipped("questar/finishes.ron", "diffuse black anodize", 40_000);
+    assert!((1.6..2.0).contains(&ratio.mean) && ratio.error < 0.05, "{ratio:?}");
 }
 
 /// Seconds of eight lanes over those of one: `cargo test --release --test compare -- --ignored --nocapture cost`.
@@ -319,7 +326,7 @@ fn cost_of_eight_coatings_and_of_eight_finishes() {
         let documents = documents(&variants);
         let seconds = |lineup: Lineup, names: &[String]| {
             let mut lineup = lineup;
-            lineup.traces[0].compiled.settings.rays = 1 << 18;
+            lineup.traces[0].compiled.settings.rays = 1 << 16;
             let start = std::time::Instant::now();
             let comparison = traced(lineup, names, 1);
             (start.elapsed().as_secs_f64(), comparison.segments)

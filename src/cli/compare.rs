@@ -31,7 +31,7 @@ pub struct CompareArgs {
     /// Threads, from 1 up; all cores if not given. The result does not depend on it
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(THREADS))]
     pub threads: Option<u16>,
-    /// Stop early when every variant of the first trace is known to this relative standard error: "1 % on fpa"
+    /// Stop early at this relative standard error of all lanes: "1 % on fpa"
     #[arg(long, value_name = "ERROR")]
     pub until: Option<String>,
     #[command(flatten)]

@@ -8,6 +8,8 @@
 //! over all arrivals k of flux F_k (W), with r_k reflections there on the way; dimensionless. 1 per cent less of the quantity is so many
 //! per cent less stray light. Errors are those of a ratio of means over batches (Cochran, Sampling Techniques, 1977, eq. 6.13).
 //!
+//! A total reflection counts as a reflection, though no coating makes it.
+//!
 //! Left out: what more scatter takes from the specular beam of the same surface (a part of its TIS); scatter inside media; what
 //! happened after the steps that a path can spell, whose flux is told.
 
