@@ -13,6 +13,8 @@ fn main() -> ExitCode {
     };
     let done = match cli.verb {
         Verb::Run(args) => cli::run::run(&args),
+        Verb::Compare(args) => cli::compare::compare(&args),
+        Verb::Sensitivity(args) => cli::sensitivity::sensitivity(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
         Verb::Bsdf(args) => cli::bsdf::bsdf(&args),

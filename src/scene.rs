@@ -127,10 +127,16 @@ impl Scene {
         &self.surfaces[side[!hit.front as usize] as usize]
     }
 
-    /// Whether a side of a part scatters, in the first variant.
+    /// Whether a side of a part scatters in any variant.
     pub fn scatters(&self, part: u32, front: bool) -> bool {
-        let surface = self.parts[part as usize].surface[0][!front as usize];
-        !self.surfaces[surface as usize].lobes.is_empty()
+        let mut lanes = self.parts[part as usize].surface.iter();
+        lanes.any(|sides| !self.surfaces[sides[!front as usize] as usize].lobes.is_empty())
+    }
+
+    /// True for a bare interface in every variant.
+    fn is_plain(&self, hit: Hit) -> bool {
+        let mut lanes = self.part(hit).surface.iter();
+        lanes.all(|sides| self.surfaces[sides[!hit.front as usize] as usize].is_plain())
     }
 
     /// One event out of all faces that lie on each other at a crossing: media before and after, and the face whose
@@ -141,7 +147,7 @@ impl Scene {
         if let [hit] = hits
             && self.part(*hit).kind == PartKind::Sheet
         {
-            let acting = (!self.surface(*hit, 0).is_plain()).then_some(*hit);
+            let acting = (!self.is_plain(*hit)).then_some(*hit);
             return Some(Crossed { media: [self.medium_in(solids); 2], beyond: *solids, acting });
         }
         let mut beyond = *solids;
@@ -182,15 +188,12 @@ impl Scene {
             PartKind::Face(solid) => hits.len() == 1 || self.net_entries(hits, solid) != 0,
             PartKind::Sheet | PartKind::Between { .. } => true,
         };
-        let rank = |hit: &&Hit| {
-            let surface = self.surface(**hit, 0);
-            (!surface.opaque(), surface.is_plain())
-        };
+        let rank = |hit: &&Hit| (!self.surface(**hit, 0).opaque(), self.is_plain(**hit));
         let hit = match hits {
             [only] => *only,
             _ => *hits.iter().filter(there).min_by_key(rank)?,
         };
-        (!same_medium || !self.surface(hit, 0).is_plain()).then_some(hit)
+        (!same_medium || !self.is_plain(hit)).then_some(hit)
     }
 
     /// The solids that contain `point` (scene coordinates), by the winding number along a fixed skew direction.

@@ -24,6 +24,16 @@ pub struct Settings {
     pub paths: usize,
     pub importance: Guidance,
     pub trace: Trace,
+    pub booking: Booking,
+}
+
+/// Whether it is counted what happened on the way of the stray light that arrives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Booking {
+    #[default]
+    Flux,
+    /// For every detector, part and kind of event.
+    Events,
 }
 
 /// Which way light is followed. The expectation of every number is the same.
@@ -79,6 +89,7 @@ impl Default for Settings {
             paths: 1000,
             importance: Guidance::default(),
             trace: Trace::default(),
+            booking: Booking::default(),
         }
     }
 }

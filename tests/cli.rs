@@ -75,8 +75,10 @@ fn every_way_to_end_has_its_code() {
     fs::write(folder.path().join("bad.ron"), "System(").expect("file");
     fs::write(folder.path().join("lost.ron"), GOOD.replace("bricks.gltf", "gone.glb")).expect("file");
     fs::write(folder.path().join("cut.ron"), GOOD.replace("rays: 2_048", "rays: 2_048, max_events: 1")).expect("file");
+    let levels = GOOD.replace("run: (", "variants: { \"level\": Bracket },\n    run: (");
+    fs::write(folder.path().join("levels.ron"), levels).expect("file");
     let ray = ["ray", "system.ron", "--from", "(0, 0, 9) mm", "--direction"];
-    let cases: [(&[&str], i32); 22] = [
+    let cases: [(&[&str], i32); 26] = [
         (&["check", "system.ron"], 0),
         (&["run", "system.ron", "-o", "out"], 0),
         (&[&ray[..], &["(0, 0, -1)"]].concat(), 0),
@@ -89,6 +91,10 @@ fn every_way_to_end_has_its_code() {
         (&["check"], 64),
         (&["run", "system.ron"], 64),
         (&["run", "system.ron", "-o", "out", "--threads", "0"], 64),
+        (&["compare", "system.ron", "-o", "both"], 64),
+        (&["compare", "levels.ron", "-o", "both"], 0),
+        (&["run", "levels.ron", "-o", "low", "--variant", "level low"], 0),
+        (&["sensitivity", "system.ron", "-o", "levers"], 0),
         (&["run", "system.ron", "-o", "out", "--rays", "1.5"], 64),
         (&["run", "system.ron", "-o", "out", "--until", "soon"], 64),
         (&["run", "system.ron", "-o", "out", "--until", "1 % on below"], 64),
@@ -110,14 +116,26 @@ fn every_way_to_end_has_its_code() {
     for file in ["summary.json", "report.html", "paths.csv", "above.fits", "above.png", "above.npy"] {
         assert!(folder.path().join("out").join(file).is_file(), "{file}");
     }
+    for file in ["compare.html", "compare.json", "compare.csv", "baseline/report.html", "level_high/above.fits"] {
+        assert!(folder.path().join("both").join(file).is_file(), "{file}");
+    }
+    for file in ["sensitivity.json", "sensitivity.csv"] {
+        assert!(folder.path().join("levers").join(file).is_file(), "{file}");
+    }
 }
 
 #[test]
 fn help_of_every_verb_ends_with_an_example() {
     let here = Path::new(".");
-    for arguments in
-        [&["--help"][..], &["run", "--help"], &["check", "--help"], &["ray", "--help"], &["schema", "--help"]]
-    {
+    for arguments in [
+        &["--help"][..],
+        &["run", "--help"],
+        &["check", "--help"],
+        &["ray", "--help"],
+        &["schema", "--help"],
+        &["compare", "--help"],
+        &["sensitivity", "--help"],
+    ] {
         let said = text(&outcome(here, arguments).1.stdout);
         assert!(said.contains("Example:\n  straylight "), "{arguments:?}: {said}");
         assert!(said.lines().all(|line| line.chars().count() <= 110), "{said}");

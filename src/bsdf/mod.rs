@@ -23,6 +23,7 @@ pub mod oren_nayar;
 pub mod polish;
 pub mod radial;
 pub mod reading;
+pub mod scaled;
 pub mod spectral;
 pub mod speos;
 pub mod tabulated;
@@ -43,6 +44,7 @@ pub use microfacet::{Compensation, Distribution, Facets, Microfacet};
 pub use oren_nayar::OrenNayar;
 pub use polish::{KCorrelation, Polish, PsdTable};
 pub use radial::Side;
+pub use scaled::Scaled;
 pub use spectral::Spectral;
 pub use tabulated::Tabulated;
 

@@ -4,6 +4,7 @@ mod against;
 pub mod bsdf;
 pub mod check;
 pub mod coating;
+pub mod compare;
 pub mod export;
 pub mod finishes;
 pub mod fit;
@@ -13,6 +14,7 @@ mod optics;
 pub mod ray;
 pub mod run;
 pub mod schema;
+pub mod sensitivity;
 mod stop;
 mod table;
 
@@ -46,6 +48,10 @@ Example:
 pub enum Verb {
     /// Trace a system and write a report
     Run(run::RunArgs),
+    /// Trace the variants of a system together and say what they change
+    Compare(compare::CompareArgs),
+    /// Say which surface to improve first
+    Sensitivity(sensitivity::SensitivityArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event
@@ -79,6 +85,9 @@ pub struct Chosen {
     /// Choose one of the system's `configurations`
     #[arg(long, value_name = "NAME")]
     pub configuration: Option<String>,
+    /// Choose one of the system's `variants`, by itself
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -89,15 +98,21 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 impl Chosen {
     /// Reads a system with its parameters so chosen.
     pub fn read(&self, system: &Path) -> Result<Document, Error> {
-        let choice = Choice { configuration: self.configuration.clone(), set: self.set.clone() };
-        Document::choose(system, &choice)
+        Document::choose(system, &self.choice())
+    }
+
+    /// What is chosen.
+    pub fn choice(&self) -> Choice {
+        let Chosen { set, configuration, variant } = self;
+        Choice { configuration: configuration.clone(), set: set.clone(), variant: variant.clone() }
     }
 
     /// As arguments of a command line.
     pub fn command(&self) -> String {
         let set = self.set.iter().map(|(name, value)| format!(" --set {name}={value:?}"));
         let named = self.configuration.iter().map(|name| format!(" --configuration {name:?}"));
-        named.chain(set).collect()
+        let variant = self.variant.iter().map(|name| format!(" --variant {name:?}"));
+        named.chain(variant).chain(set).collect()
     }
 }
 

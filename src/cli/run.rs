@@ -54,7 +54,7 @@ Exit code: 0 done, 3 done but not to be trusted (the report says why), 64 usage,
 66 missing file, 74 report not writable, 130 Ctrl-C, 143 terminated.";
 
 /// A number of rays: 1000000, 1_000_000 or 1e6.
-fn count(text: &str) -> Result<u64, String> {
+pub fn count(text: &str) -> Result<u64, String> {
     let plain = text.replace('_', "");
     let number = plain.parse::<f64>().map_err(|_| "expected a number such as 1000000 or 1e6".to_string())?;
     if number >= 1.0 && number <= (1u64 << 48) as f64 && number.fract() == 0.0 {
@@ -75,9 +75,10 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Error::Internal(format!("no threads: {error}")))?;
     let start = Instant::now();
-    let ticker = Ticker::new(&compiled.scene, &settings);
-    let counts = pool.install(|| transport::run::<V>(&compiled.scene, &settings, &stop.asked, &|p| ticker.tick(p)));
-    ticker.bar.finish_and_clear();
+    let ticker = Ticker::new(settings.batches() * settings.batch_rays());
+    let tick = |p: &Progress<V>| ticker.tick(p.batches as f64 / p.of as f64, &so_far(&compiled.scene, p));
+    let counts = pool.install(|| transport::run::<V>(&compiled.scene, &settings, &stop.asked, &tick));
+    ticker.finish();
     if counts.interrupted {
         let all = settings.batches();
         say(&format!("interrupted: {} of {all} batches are finished\n", counts.sums.batches));
@@ -105,7 +106,7 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
 }
 
 /// Makes the folder and tries it with a file that vanishes.
-fn writable(folder: &Path) -> Result<(), Error> {
+pub fn writable(folder: &Path) -> Result<(), Error> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     tried.map(drop).map_err(|source| Error::Io { path: folder.into(), source })
 }
@@ -142,7 +143,7 @@ fn settings(args: &RunArgs, compiled: &Compiled) -> Result<Settings, Error> {
 }
 
 /// "1 % on fpa".
-fn until(text: &str, scene: &Scene) -> Result<Until, Error> {
+pub fn until(text: &str, scene: &Scene) -> Result<Until, Error> {
     let refuse = |what: String| Error::Usage(format!("--until {text:?}: {what}"));
     let wanted: straylight::system::document::Until =
         straylight::system::units::FromText::from_text(text).map_err(refuse)?;
@@ -152,7 +153,8 @@ fn until(text: &str, scene: &Scene) -> Result<Until, Error> {
     Ok(Until { detector, relative: wanted.relative })
 }
 
-fn host() -> String {
+/// System and cores.
+pub fn host() -> String {
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     format!("{} {}, {cores} cores", std::env::consts::OS, std::env::consts::ARCH)
 }
@@ -169,40 +171,45 @@ fn command(args: &RunArgs, settings: &Settings) -> String {
     )
 }
 
-/// Shows how far the run is: a bar on a terminal, else a plain line every ten seconds.
-struct Ticker<'a> {
+/// Shows how far it is: a bar on a terminal, else a plain line every ten seconds.
+pub struct Ticker {
     bar: ProgressBar,
-    scene: &'a Scene,
     start: Instant,
     last: Mutex<Instant>,
 }
 
-impl<'a> Ticker<'a> {
-    fn new(scene: &'a Scene, settings: &Settings) -> Ticker<'a> {
-        let bar = if std::io::stderr().is_terminal() {
-            ProgressBar::new(settings.batches() * settings.batch_rays())
-        } else {
-            ProgressBar::hidden()
-        };
+impl Ticker {
+    /// A bar of so many source rays.
+    pub fn new(rays: u64) -> Ticker {
+        let bar = if std::io::stderr().is_terminal() { ProgressBar::new(rays) } else { ProgressBar::hidden() };
         let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {eta:>6} left  {msg}");
         bar.set_style(style.unwrap_or(ProgressStyle::default_bar()));
-        Ticker { bar, scene, start: Instant::now(), last: Mutex::new(Instant::now()) }
+        Ticker { bar, start: Instant::now(), last: Mutex::new(Instant::now()) }
     }
 
-    fn tick(&self, progress: &Progress<V>) {
-        let estimate = self.scene.detectors.first().map(|detector| {
-            let estimate = progress.sums.estimate(progress.layout.detector(0), 0);
-            format!("{}: {} W", detector.label, report::measured(estimate.mean, estimate.error))
-        });
-        let estimate = estimate.unwrap_or_default();
-        self.bar.set_position(progress.batches * progress.batch_rays);
-        self.bar.set_message(estimate.clone());
+    /// The part `done` (0..1) is traced.
+    pub fn tick(&self, done: f64, message: &str) {
+        self.bar.set_position((done * self.bar.length().unwrap_or(0) as f64) as u64);
+        self.bar.set_message(message.to_owned());
         let Ok(mut last) = self.last.lock() else { return };
         if self.bar.is_hidden() && last.elapsed() >= Duration::from_secs(10) {
             *last = Instant::now();
-            let done = progress.batches as f64 / progress.of as f64;
             let left = self.start.elapsed().as_secs_f64() * (1.0 - done) / done;
-            say(&format!("{:.0} % done, {left:.0} s left; {estimate}\n", 100.0 * done));
+            say(&format!("{:.0} % done, {left:.0} s left; {message}\n", 100.0 * done));
         }
     }
+
+    /// Wipes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The first detector's flux so far.
+fn so_far(scene: &Scene, progress: &Progress<V>) -> String {
+    let estimate = scene.detectors.first().map(|detector| {
+        let estimate = progress.sums.estimate(progress.layout.detector(0), 0);
+        format!("{}: {} W", detector.label, report::measured(estimate.mean, estimate.error))
+    });
+    estimate.unwrap_or_default()
 }

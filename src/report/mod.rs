@@ -12,6 +12,7 @@
 //! Nothing here computes physics: it only rounds, draws and lays out what `tally` found.
 
 mod atomic;
+pub mod compare;
 mod digest;
 mod fits;
 mod html;
@@ -21,6 +22,7 @@ mod npy;
 mod paths;
 mod picture;
 pub mod problems;
+pub mod sensitivity;
 mod share;
 mod summary;
 mod text;

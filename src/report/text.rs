@@ -127,7 +127,7 @@ fn estimate(value: Estimate) -> String {
 }
 
 /// A long path with its runs of transmissions counted instead of named, and cut if it is still too long.
-fn shortened(sequence: &str) -> String {
+pub(super) fn shortened(sequence: &str) -> String {
     if sequence.chars().count() <= SEQUENCE {
         return sequence.into();
     }

@@ -20,8 +20,7 @@ pub struct WriteError {
 /// # Errors
 /// The first file that could not be written; those before it stay.
 pub fn write(dir: &Path, results: &Results, run: &RunInfo) -> Result<Vec<PathBuf>, WriteError> {
-    std::fs::create_dir_all(dir).map_err(|source| WriteError { path: dir.into(), source })?;
-    let mut folder = Folder { dir, written: Vec::new() };
+    let mut folder = Folder::new(dir)?;
     let stems = name::stems(results.maps.iter().map(|map| map.detector.as_str()));
     for (map, stem) in results.maps.iter().zip(&stems) {
         folder.map(map, stem, results, run)?;
@@ -33,12 +32,19 @@ pub fn write(dir: &Path, results: &Results, run: &RunInfo) -> Result<Vec<PathBuf
     Ok(folder.written)
 }
 
-struct Folder<'a> {
+/// A folder that files are written into.
+pub(super) struct Folder<'a> {
     dir: &'a Path,
-    written: Vec<PathBuf>,
+    pub written: Vec<PathBuf>,
 }
 
 impl Folder<'_> {
+    /// The folder; made if it is not there.
+    pub fn new(dir: &Path) -> Result<Folder<'_>, WriteError> {
+        std::fs::create_dir_all(dir).map_err(|source| WriteError { path: dir.into(), source })?;
+        Ok(Folder { dir, written: Vec::new() })
+    }
+
     fn map(&mut self, map: &MapResult, stem: &str, results: &Results, run: &RunInfo) -> Result<(), WriteError> {
         self.file(&format!("{stem}.fits"), |out| {
             whole(map)?;
@@ -49,7 +55,8 @@ impl Folder<'_> {
         self.file(&format!("{stem}.png"), |out| out.write_all(&picture::png(map, &results.system)?))
     }
 
-    fn file(
+    /// Writes one file, as a whole or not at all.
+    pub fn file(
         &mut self,
         name: &str,
         content: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,

@@ -78,6 +78,7 @@ mod tests {
         fields::<Detector>();
         fields::<Run>();
         fields::<Roulette>();
+        fields::<Bracket>();
         options::<Up>();
         options::<Body>();
         options::<Form>();

@@ -1,6 +1,6 @@
 //! Which number lives in which slot.
 
-use crate::packet::Class;
+use crate::packet::{Class, Event};
 
 /// Cells along each side of the coarse grid on which the peak of a path is given.
 pub const PATH_GRID: usize = 16;
@@ -61,12 +61,16 @@ pub struct Layout {
     bins: Vec<usize>,
     rows: usize,
     first_row: usize,
+    /// Whether what happened on the way is counted.
+    events: bool,
 }
 
 const CUTS: usize = Cut::ALL.len();
 const LOSSES: usize = Loss::ALL.len();
 /// emitted, absorbed, escaped, terminated, lost, residual; lost backwards.
 const TOTALS: usize = 7;
+/// What a part does to light: reflect, transmit, scatter.
+const EVENTS: usize = 3;
 /// Per path row: flux, flux x optical path, then the coarse grid.
 const ROW: usize = 2 + PATH_GRID * PATH_GRID;
 
@@ -91,12 +95,34 @@ impl Layout {
                 first
             })
             .collect();
-        Layout { parts, media, sources, detectors, bins, rows, first_row: next }
+        Layout { parts, media, sources, detectors, bins, rows, first_row: next, events: false }
+    }
+
+    /// The same with slots for what happened on the way of stray light.
+    pub fn with_events(self) -> Layout {
+        Layout { events: true, ..self }
     }
 
     /// Number of slots.
     pub fn len(&self) -> usize {
-        self.first_row + self.rows * ROW
+        let events = if self.events { self.bins.len() * self.events_each() } else { 0 };
+        self.first_row + self.rows * ROW + events
+    }
+
+    /// Slots of the events of one detector.
+    fn events_each(&self) -> usize {
+        2 + EVENTS * self.parts
+    }
+
+    /// Stray flux on a detector; the next slot holds that of paths too long to be spelt. `None` where nothing is counted.
+    pub fn stray(&self, detector: usize) -> Option<usize> {
+        self.events.then(|| self.first_row + self.rows * ROW + detector * self.events_each())
+    }
+
+    /// Stray flux on a detector times the number of such events of a part on its path; `None` where nothing is counted.
+    pub fn event(&self, detector: usize, part: usize, event: Event) -> Option<usize> {
+        let kind = (event as usize) < EVENTS;
+        self.stray(detector).filter(|_| kind).map(|first| first + 2 + EVENTS * part + event as usize)
     }
 
     /// True if there is nothing to book; never in a run.
@@ -191,7 +217,7 @@ mod tests {
 
     #[test]
     fn no_two_numbers_share_a_slot() {
-        let layout = Layout::new(3, 2, 4, vec![4, 5], 6);
+        let layout = Layout::new(3, 2, 4, vec![4, 5], 6).with_events();
         let mut slots: Vec<usize> = (0..TOTALS).collect();
         slots.extend(layout.cuts().chain(layout.losses()).chain(layout.absorbers()));
         for d in 0..2 {
@@ -199,6 +225,10 @@ mod tests {
             slots.extend((0..Class::COUNT).map(|c| layout.class(d, c)));
             slots.extend((0..4).map(|s| layout.source(d, s)));
             slots.extend((0..layout.bins(d)).map(|b| layout.bin(d, b)));
+            slots.extend(layout.stray(d).into_iter().flat_map(|first| [first, first + 1]));
+            for event in [Event::Reflect, Event::Transmit, Event::Scatter, Event::Bulk] {
+                slots.extend((0..3).filter_map(|part| layout.event(d, part, event)));
+            }
         }
         for row in 0..6 {
             slots.extend([layout.row(row), layout.row_path(row)]);

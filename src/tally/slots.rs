@@ -108,6 +108,11 @@ impl<const V: usize> Sums<V> {
         Sums { batches: self.batches + other.batches, entries: merged }
     }
 
+    /// Sum in a slot over all batches, in every lane.
+    pub fn values(&self, slot: usize) -> [f64; V] {
+        self.find(slot).map_or([0.0; V], |entry| entry.sum)
+    }
+
     /// Mean over batches and its error in one lane; zeros if nothing was ever added.
     pub fn estimate(&self, slot: usize, lane: usize) -> Estimate {
         self.find(slot).map_or(Estimate::default(), |entry| {

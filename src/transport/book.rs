@@ -3,7 +3,7 @@
 use super::backward::Backward;
 use super::paths::{Candidates, Rows};
 use crate::detector::Arrival;
-use crate::packet::Ancestry;
+use crate::packet::{Ancestry, Class};
 use crate::scene::Scene;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
 use crate::tally::{Layout, Live, Sums};
@@ -97,12 +97,28 @@ impl<'a, const V: usize> Book<'a, V> {
         self.live.add(self.layout.class(detector, ancestry.class().index()), flux);
         self.live.add(self.layout.source(detector, ancestry.source.into()), flux);
         self.live.add(self.layout.bin(detector, bin), flux);
+        if let Some(stray) = self.layout.stray(detector).filter(|_| ancestry.class() != Class::Signal) {
+            self.events(detector, stray, ancestry, flux);
+        }
         match rows.find(detector, ancestry.key) {
             None => self.live.add(self.layout.other(detector), flux),
             Some(row) => {
                 self.live.add(self.layout.row(row), flux);
                 self.live.add(self.layout.row_path(row), flux.map(|f| f * ancestry.optical_path));
                 self.live.add(self.layout.row_cell(row, coarse_cell(bin, grid.shape())), flux);
+            }
+        }
+    }
+
+    /// Stray light and what happened on its way, once for every time that it did.
+    fn events(&mut self, detector: usize, stray: usize, ancestry: &Ancestry, flux: [f64; V]) {
+        self.live.add(stray, flux);
+        if ancestry.events as usize > ancestry.steps.len() {
+            self.live.add(stray + 1, flux);
+        }
+        for step in &ancestry.steps {
+            if let Some(slot) = self.layout.event(detector, step.number() as usize, step.event()) {
+                self.live.add(slot, flux);
             }
         }
     }

@@ -87,10 +87,24 @@ pub(super) fn meet<const V: usize>(
     let index = crossed.media.map(|medium| scene.index(medium, wavelength));
     let surfaces: [&Surface; V] = std::array::from_fn(|lane| scene.surface(hit, lane));
     let at = surfaces.map(|surface| Incidence { wi, wavelength, index, lay: lay(surface, &frame) });
-    let shares = std::array::from_fn(|lane| surfaces[lane].shares(&at[lane]));
+    let shares = each(&surfaces, |lane| surfaces[lane].shares(&at[lane]));
     let refracted = refraction::refract(wi, index[0].re, index[1].re);
     let part = scene.part_of[hit.triangle as usize];
     Meeting { crossed, front: hit.front, part, surfaces, shares, frame, at, refracted }
+}
+
+/// A value for every lane, worked out once for those that have the same surface.
+pub(super) fn each<T: Clone, const V: usize>(surfaces: &[&Surface; V], value: impl Fn(usize) -> T) -> [T; V] {
+    let mut all: [Option<T>; V] = [const { None }; V];
+    for lane in 0..V {
+        let known = surfaces[..lane].iter().rposition(|known| std::ptr::eq(*known, surfaces[lane]));
+        all[lane] = known.and_then(|known| all[known].clone()).or_else(|| Some(value(lane)));
+    }
+    let mut lane = 0;
+    all.map(|found| {
+        lane += 1;
+        found.unwrap_or_else(|| value(lane - 1))
+    })
 }
 
 /// The lay of a surface along its tangent plane, local; x where it has none or stands upright.

@@ -15,7 +15,7 @@ pub mod watch;
 
 use crate::math::rng::mix;
 use crate::scene::Scene;
-use crate::settings::{Guidance, Settings, Trace};
+use crate::settings::{Booking, Guidance, Settings, Trace};
 use crate::tally::results::GuidanceResult;
 use crate::tally::{Fold, Layout, Live, Sums};
 use backward::Backward;
@@ -65,6 +65,17 @@ pub fn run<const V: usize>(
     stop: &AtomicBool,
     progress: &dyn Fn(&Progress<V>),
 ) -> Counts<V> {
+    batchwise(scene, settings, stop, progress, &mut |_, _, _| ())
+}
+
+/// The same; `batch` is shown every batch before it is folded in, in order.
+pub fn batchwise<const V: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &dyn Fn(&Progress<V>),
+    batch: &mut dyn FnMut(&Layout, &Rows, &Sums<V>),
+) -> Counts<V> {
     let batch_rays = settings.batch_rays();
     let quotas = quotas(scene, batch_rays);
     let declared = Importance::declared(scene);
@@ -85,7 +96,10 @@ pub fn run<const V: usize>(
     let backward = (settings.trace == Trace::Backward).then(|| Backward::new(scene, lit));
     let plan = Plan { importance, backward: backward.as_ref(), ..plain };
     let rows = pilot::<V>(&plan, stop);
-    let layout = scene.layout(rows.rows.len());
+    let layout = match settings.booking {
+        Booking::Flux => scene.layout(rows.rows.len()),
+        Booking::Events => scene.layout(rows.rows.len()).with_events(),
+    };
     let pool = Mutex::new(Vec::new());
     let mut fold = Fold::default();
     let (mut done, mut segments) = (0, 0);
@@ -101,6 +115,7 @@ pub fn run<const V: usize>(
                 .collect();
             for finished in chunk {
                 let Some((sums, flights)) = finished else { break 'stages };
+                batch(&layout, &rows, &sums);
                 fold.push(sums);
                 segments += flights;
                 done += 1;
@@ -150,8 +165,11 @@ const FEWEST_RAYS: u64 = 100;
 fn precise_enough<const V: usize>(settings: &Settings, layout: &Layout, sums: &Sums<V>) -> bool {
     settings.until.is_some_and(|until| {
         let slot = layout.detector(until.detector);
-        let estimate = sums.estimate(slot, 0);
-        sums.rays(slot) >= FEWEST_RAYS && estimate.error <= until.relative * estimate.mean
+        let known = |lane: usize| {
+            let estimate = sums.estimate(slot, lane);
+            estimate.error <= until.relative * estimate.mean
+        };
+        sums.rays(slot) >= FEWEST_RAYS && (0..V).all(known)
     })
 }
 

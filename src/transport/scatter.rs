@@ -2,7 +2,7 @@
 
 use super::backward::reverse;
 use super::importance::{Advice, Occasion};
-use super::interaction::{Bill, Meeting, depart};
+use super::interaction::{Bill, Meeting, depart, each};
 use super::walk::Walk;
 use super::watch::Watch;
 use crate::bsdf::Weighed;
@@ -121,7 +121,7 @@ fn one<const V: usize, W: Watch>(
         surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng)
     };
     let Some(wo) = drawn else { return false };
-    let weighed: [Weighed; V] = std::array::from_fn(|l| surfaces[l].weigh(&at[l], &shares[l], wo));
+    let weighed: [Weighed; V] = each(surfaces, |l| surfaces[l].weigh(&at[l], &shares[l], wo));
     let lobes: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
     let density = if plan.advice.is_plain() { lobes } else { plan.advice.density(meeting.frame.to_world(wo), lobes) };
     let values = match &walk.trail {

@@ -2,6 +2,7 @@
 
 use super::Counts;
 use super::book::coarse_cell;
+use super::paths::Row;
 use crate::detector::Detector;
 use crate::math::statistics::student95;
 use crate::packet::{Class, Event, Step};
@@ -70,6 +71,21 @@ pub fn results<const V: usize>(
         path_grid: PATH_GRID,
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
         maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),
+    }
+}
+
+/// "sun > Lens_1.front:T > Barrel:S": the source, then every part or medium with what it did.
+pub fn sequence(scene: &Scene, row: &Row) -> String {
+    let step = |s: &Step| format!("{}:{}", label(scene, s), s.event().letter());
+    let names = std::iter::once(scene.sources[row.source].label.clone()).chain(row.steps.iter().map(step));
+    names.collect::<Vec<_>>().join(" > ")
+}
+
+/// Name of the part or medium of a step.
+fn label<'a>(scene: &'a Scene, step: &Step) -> &'a str {
+    match step.event() {
+        Event::Bulk => &scene.media[step.number() as usize].label,
+        _ => &scene.parts[step.number() as usize].label,
     }
 }
 
@@ -268,16 +284,10 @@ impl<const V: usize> Teller<'_, V> {
         let flux_w = self.estimate(layout.row(index));
         let cells = layout.row_cells(index).zip(areas).filter(|(_, area)| **area > 0.0);
         let peak = cells.map(|(slot, area)| self.estimate(slot).mean / area).fold(0.0, f64::max);
-        let label = |step: &Step| match step.event() {
-            Event::Bulk => self.scene.media[step.number() as usize].label.as_str(),
-            _ => self.scene.parts[step.number() as usize].label.as_str(),
-        };
         let source = self.scene.sources[row.source].label.clone();
-        let step = |s: &Step| format!("{}:{}", label(s), s.event().letter());
-        let names = std::iter::once(source.clone()).chain(row.steps.iter().map(step));
         Some(PathResult {
             detector: self.scene.detectors[row.detector].label.clone(),
-            sequence: names.collect::<Vec<_>>().join(" > "),
+            sequence: sequence(self.scene, row),
             source,
             class: row.class.label(self.scene.has_optics),
             rays,
@@ -285,7 +295,7 @@ impl<const V: usize> Teller<'_, V> {
             percent: 100.0 * flux_w.mean / total,
             ghost_order: row.ghosts as u32,
             scatter_order: row.scatters as u32,
-            last_scatter: row.last_scatter.map_or(String::new(), |step| label(&step).into()),
+            last_scatter: row.last_scatter.map_or(String::new(), |step| label(self.scene, &step).into()),
             optical_path_m: self.estimate(layout.row_path(index)).mean / flux_w.mean,
             peak_w_m2: peak,
         })

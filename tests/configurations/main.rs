@@ -49,7 +49,7 @@ fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
 /// The system `system.ron` of a folder, with parameters so set.
 fn read(folder: &Path, set: &[(&str, &str)]) -> Result<Document, Error> {
     let set = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
-    Document::choose(&folder.join("system.ron"), &Choice { set, configuration: None })
+    Document::choose(&folder.join("system.ron"), &Choice { set, ..Choice::default() })
 }
 
 fn compiled(folder: &Path) -> Compiled {

@@ -3,6 +3,7 @@
 //! The order is that of a reader: what was found, whether it can be trusted, where the light fell, which way it came, where the rest
 //! went, how to repeat it.
 
+mod compare;
 mod figure;
 mod ledger;
 mod number;
@@ -11,14 +12,33 @@ mod paths;
 mod reproduce;
 mod section;
 
+use crate::study::compare::Comparison;
 use crate::tally::results::{Results, RunInfo};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Colours, type and print rules.
 const STYLE: &str = include_str!("style.css");
 
-/// The whole page.
+/// The page of a run.
 pub fn page(results: &Results, run: &RunInfo) -> String {
+    whole(
+        &results.system,
+        &html! {
+            (overview::overview(results, run))
+            @for (index, name) in results.detectors.keys().enumerate() { (section::detector(results, index, name)) }
+            (ledger::ledger(results))
+            (warnings(results))
+            (reproduce::reproduce(results, run))
+        },
+    )
+}
+
+/// The page of a comparison.
+pub fn comparison(comparison: &Comparison, run: &RunInfo) -> String {
+    whole(&comparison.system, &compare::body(comparison, run))
+}
+
+fn whole(system: &str, body: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -26,16 +46,10 @@ pub fn page(results: &Results, run: &RunInfo) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'";
-                title { (results.system) " – stray light" }
+                title { (system) " – stray light" }
                 style { (PreEscaped(STYLE)) }
             }
-            body { main {
-                (overview::overview(results, run))
-                @for (index, name) in results.detectors.keys().enumerate() { (section::detector(results, index, name)) }
-                (ledger::ledger(results))
-                (warnings(results))
-                (reproduce::reproduce(results, run))
-            } }
+            body { main { (body) } }
         }
     }
     .into_string()

@@ -60,7 +60,7 @@ fn row(rank: usize, path: &PathResult, share: &str) -> Markup {
 }
 
 /// Surfaces with their events, in the order of the light.
-fn sequence(text: &str) -> Markup {
+pub fn sequence(text: &str) -> Markup {
     html! {
         @for (index, step) in text.split(" > ").enumerate() {
             @if index > 0 { span.then { " › " } }

@@ -3,6 +3,7 @@
 use crate::report::measured::grouped;
 use crate::tally::results::{Results, RunInfo};
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 pub fn reproduce(results: &Results, run: &RunInfo) -> Markup {
     let gap = "\u{202f}";
@@ -30,13 +31,37 @@ pub fn reproduce(results: &Results, run: &RunInfo) -> Markup {
                     tbody { @for finish in &results.finishes { tr { td { (finish) } } } }
                 }
             }
-            @if !results.inputs.is_empty() {
-                table.inputs {
-                    thead { tr { th { "Input" } th { "SHA-256" } } }
-                    tbody { @for (name, hash) in &results.inputs { tr { td { (name) } td.hash { (hash) } } } }
-                }
-            }
-            footer { "Geometric optics: diffraction is outside of this model. Made by straylight " (run.version) "." }
+            (inputs(&results.inputs))
+            (footer(run))
         }
     }
+}
+
+/// The same for what is more than one run.
+pub fn repeat(run: &RunInfo, read: &BTreeMap<String, String>) -> Markup {
+    html! {
+        section.reproduce {
+            h2 { "Repeat this" }
+            p { "The same version, inputs and seed give the same bits on any number of threads." }
+            pre { (run.command) }
+            p.note { "straylight " (run.version) ", " (run.threads) " threads on " (run.host) ", " (format!("{:.1}", run.seconds)) " s" }
+            (inputs(read))
+            (footer(run))
+        }
+    }
+}
+
+fn inputs(inputs: &BTreeMap<String, String>) -> Markup {
+    html! {
+        @if !inputs.is_empty() {
+            table.inputs {
+                thead { tr { th { "Input" } th { "SHA-256" } } }
+                tbody { @for (name, hash) in inputs { tr { td { (name) } td.hash { (hash) } } } }
+            }
+        }
+    }
+}
+
+fn footer(run: &RunInfo) -> Markup {
+    html! { footer { "Geometric optics: diffraction is outside of this model. Made by straylight " (run.version) "." } }
 }

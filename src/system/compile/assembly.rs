@@ -2,6 +2,7 @@
 
 use super::configure::{self, Landmark};
 use super::exact::NodeFaces;
+use super::models::Finish;
 use super::{Shop, alias};
 use crate::error::Problem;
 use crate::geometry::{Body, rotation};
@@ -36,6 +37,8 @@ pub struct Assembly {
     pub unsaid: Vec<u32>,
     /// Exact faces of each node.
     pub exact: Vec<NodeFaces>,
+    /// What the document says of each surface of the scene.
+    pub finishes: Vec<Finish>,
 }
 
 /// Reads and places every geometry file, and does what the system says about its nodes.

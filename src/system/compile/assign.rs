@@ -67,6 +67,7 @@ pub fn assign(shop: &mut Shop, assembly: &mut Assembly, media: &[Filling], coati
             }
         }
     }
+    assembly.finishes = finishes;
     assigned
 }
 

@@ -17,6 +17,7 @@ mod scatter;
 mod scatterer;
 mod targets;
 pub mod understanding;
+pub mod variants;
 
 use super::document::{Document, Importance, Way};
 use super::gltf::Node;
@@ -220,6 +221,7 @@ fn settings(document: &Document) -> Settings {
             Way::Forward => Trace::Forward,
             Way::Backward => Trace::Backward,
         },
+        booking: default.booking,
     }
 }
 

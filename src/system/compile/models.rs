@@ -2,7 +2,7 @@
 
 use super::Shop;
 use super::coatings::{Coatings, faces};
-use super::scatter::{deposit, lobes};
+use super::scatter::{deposit, levelled};
 use crate::coating::Side;
 use crate::error::Problem;
 use crate::scene::Filling;
@@ -62,7 +62,7 @@ impl Finish {
             shop.fault(&format!("scatter[{name:?}]"), problem);
         }
         let side = self.side.unwrap_or(Side::Front);
-        let lobes = scatter.map_or(Vec::new(), |(name, model)| lobes(shop, model, side, &format!("scatter[{name:?}]")));
+        let lobes = scatter.map_or(Vec::new(), |(name, model)| levelled(shop, name, model, side));
         let lay = self.lay.map(|lay| lay.0);
         if let Some((name, _)) = scatter.filter(|_| lay.is_none() && lobes.iter().any(|lobe| lobe.anisotropic())) {
             let what = format!("{name:?} depends on the azimuth of the light, and this surface has no lay");

@@ -9,9 +9,11 @@ use crate::bsdf::{self, Bsdf, finish};
 use crate::coating::Side;
 use crate::error::{Problem, Span};
 use crate::medium;
+use crate::optics::Incidence;
 use crate::source::Source;
 use crate::system::document as written;
 use crate::system::units::{Frequency, PowerDensity};
+use glam::DVec2;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -64,13 +66,39 @@ pub fn lobes(shop: &mut Shop, written: &written::Scatter, side: Side, path: &str
     }
 }
 
+/// The lobes of the scatter model `name`, at the level that the document wants it.
+pub fn levelled(shop: &mut Shop, name: &str, written: &written::Scatter, side: Side) -> Vec<Box<dyn Bsdf>> {
+    let path = format!("scatter[{name:?}]");
+    let lobes = lobes(shop, written, side, &path);
+    let factor = shop.document.system.level.of(name);
+    if factor == 1.0 || written.has_facets() {
+        return lobes;
+    }
+    let scaled = |lobe| -> Box<dyn Bsdf> { Box::new(bsdf::Scaled { lobe, factor }) };
+    let lobes: Vec<Box<dyn Bsdf>> = lobes.into_iter().map(scaled).collect();
+    // Every ten degrees, and close to grazing.
+    let angles = (0..9).map(|step| 10.0 * f64::from(step)).chain([85.0]);
+    for (wavelength, degrees) in
+        media::light(shop.document, 2).into_iter().flat_map(|w| angles.clone().map(move |a| (w, a)))
+    {
+        let at = Incidence { lay: DVec2::X, ..Incidence::in_air(degrees.to_radians(), wavelength) };
+        let tis: f64 = lobes.iter().map(|lobe| lobe.albedo(&at)).sum();
+        if tis > 1.0 + 1e-9 {
+            let what = format!("{factor} times this scatters {:.0} % of the light at {degrees} deg", 100.0 * tis);
+            shop.fault(&path, Problem::error(what).expecting("a bracket whose factors keep it below 100 %"));
+            break;
+        }
+    }
+    lobes
+}
+
 /// The particles of a model, if it has some; made once for every name.
 pub fn deposit(shop: &mut Shop, name: &str, written: &written::Scatter, path: &str) -> Option<Arc<Deposit>> {
     if let Some(known) = shop.deposits.get(name) {
         return Some(known.clone());
     }
     let light = media::light(shop.document, DEPOSIT_POINTS);
-    let deposit = Arc::new(particles(written, &light)?);
+    let deposit = Arc::new(particles(written, &light, shop.document.system.level.of(name))?);
     if deposit.extinction(light[0]) > 0.5 {
         let covered = format!("these particles cover {:.0} % of the surface", 100.0 * deposit.coverage);
         let hint = "the layer is treated as dilute: no particle shades another";
@@ -80,17 +108,18 @@ pub fn deposit(shop: &mut Shop, name: &str, written: &written::Scatter, path: &s
     Some(deposit)
 }
 
-/// The particles of a model, worked out at these vacuum wavelengths (m, rising).
-pub fn particles(written: &written::Scatter, light: &[f64]) -> Option<Deposit> {
+/// The particles of a model, `factor` times as many as it says, worked out at these vacuum wavelengths (m, rising).
+pub fn particles(written: &written::Scatter, light: &[f64], factor: f64) -> Option<Deposit> {
     let written::Scatter::Contamination { level, slope, smallest, largest, bins, n, k } = written.contamination()?
     else {
         return None;
     };
-    let sizes: Vec<(f64, f64)> = match bins {
+    let mut sizes: Vec<(f64, f64)> = match bins {
         // Counted, like the levels, on a tenth of a square metre.
         Some(bins) => bins.iter().map(|(diameter, number)| (diameter.0, 10.0 * number)).collect(),
         None => distribution(*level, *slope, [smallest.0, largest.0]),
     };
+    sizes.iter_mut().for_each(|(_, number)| *number *= factor);
     let dust = medium::Constant { n: *n, loss: medium::Loss::Extinction(*k) };
     // Nothing lies on it: no deposit.
     sizes.iter().any(|(_, number)| *number > 0.0).then(|| Deposit::new(&dust, &sizes, light))

@@ -76,7 +76,7 @@ pub fn scatterer(
     };
     let [here, beyond] = names;
     let index = [medium(here)?, medium(beyond)?].map(|filling| filling.medium.index(wavelength));
-    let particles = particles(written, &[wavelength]).map(Arc::new);
+    let particles = particles(written, &[wavelength], 1.0).map(Arc::new);
     if let Some(deposit) = &particles {
         let mirror = Arc::new(Mirror { reflectance: 1.0 });
         lobes.extend(Dust { deposit: deposit.clone(), coating: Some(mirror), behind: false }.lobes());

@@ -26,6 +26,7 @@ mod stack;
 mod surface;
 mod target;
 mod tree;
+mod variant;
 
 pub use bulk::{Bulk, OverWavelength};
 pub use coating::{Coating, Row, Specular};
@@ -44,6 +45,7 @@ pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use stack::{Layer, Thickness};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 pub use target::Target;
+pub use variant::{Bracket, Level};
 
 use crate::error::{Error, Problem, Span};
 use manuscript::Manuscript;
@@ -52,6 +54,7 @@ use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use tree::Node;
+use variant::{Cast, Role};
 
 /// Larger files are refused, bytes: a system is written by hand.
 const LARGEST: u64 = 64 << 20;
@@ -91,6 +94,8 @@ pub struct System {
     pub targets: Names<Target>,
     /// How it is traced.
     pub run: Run,
+    /// Factor on scatter of an end of a bracket; 1 otherwise.
+    pub level: Level,
 }
 
 /// A system and the text it was read from.
@@ -104,6 +109,8 @@ pub struct Document {
     pub system: System,
     /// Values of the parameters, in the order of the text: `120 mm`.
     pub parameters: Names<String>,
+    /// Names of the variants that the file has, in the order of the text.
+    pub variants: Vec<String>,
     /// What the author should look at, though it can be used.
     pub warnings: Vec<Problem>,
     script: Manuscript,
@@ -117,6 +124,8 @@ struct Indices {
     geometry: Vec<usize>,
     configure: Vec<usize>,
     surfaces: Vec<usize>,
+    /// Which of the surfaces are other variants': they say nothing here.
+    outlines: Vec<usize>,
 }
 
 /// Reads a file that the user names.
@@ -131,7 +140,41 @@ impl Document {
     /// The same with parameters chosen from outside; fails also if the choice names what the system has not.
     pub fn choose(path: &Path, choice: &Choice) -> Result<Document, Error> {
         let bytes = load(path)?;
-        let (document, mut problems) = Document::examine(path, &bytes, choice, Some(&load))?;
+        if let Some(variant) = &choice.variant {
+            return Document::play(path, &bytes, choice, Role::Variant(variant));
+        }
+        let document = Document::play(path, &bytes, choice, Role::Alone)?;
+        document.played(&bytes, choice)?;
+        Ok(document)
+    }
+
+    /// The system as it stands and then its variants, all with the same parts.
+    pub fn lineup(path: &Path, choice: &Choice) -> Result<Vec<Document>, Error> {
+        let bytes = load(path)?;
+        let baseline = Document::play(path, &bytes, choice, Role::Baseline)?;
+        let variants = baseline.played(&bytes, choice)?;
+        Ok(std::iter::once(baseline).chain(variants).collect())
+    }
+
+    /// All variants of the file, or everything that is wrong with any of them.
+    fn played(&self, bytes: &[u8], choice: &Choice) -> Result<Vec<Document>, Error> {
+        let (mut variants, mut wrong) = (Vec::new(), Vec::<Problem>::new());
+        for name in &self.variants {
+            match Document::play(&self.path, bytes, choice, Role::Variant(name)) {
+                Ok(variant) => variants.push(variant),
+                Err(Error::Input(problems)) => {
+                    let new = problems.into_iter().filter(|problem| !wrong.contains(problem));
+                    wrong.extend(new.collect::<Vec<_>>());
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        if wrong.is_empty() { Ok(variants) } else { Err(Error::Input(wrong)) }
+    }
+
+    /// The document in a role, if nothing is wrong with it.
+    fn play(path: &Path, bytes: &[u8], choice: &Choice, role: Role) -> Result<Document, Error> {
+        let (document, mut problems) = Document::examine(path, bytes, choice, role, Some(&load))?;
         let missing = document.missing_files();
         let sound = !problems.iter().any(Problem::is_error);
         if sound && !missing.is_empty() {
@@ -144,7 +187,7 @@ impl Document {
 
     /// Reads a system from the bytes of a file. Opens no file: what it includes is left out.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Document, Error> {
-        let (document, problems) = Document::examine(path, bytes, &Choice::default(), None)?;
+        let (document, problems) = Document::examine(path, bytes, &Choice::default(), Role::Alone, None)?;
         document.accepted(problems)
     }
 
@@ -162,22 +205,33 @@ impl Document {
         path: &Path,
         bytes: &[u8],
         choice: &Choice,
+        role: Role,
         open: Option<&Opener>,
     ) -> Result<(Document, Vec<Problem>), Error> {
         let mut gatherer = include::Gatherer::new(open);
         let name = path.file_name().map_or("system".into(), PathBuf::from);
         let tree = gatherer.file(path, &name, bytes)?;
         let include::Gatherer { mut script, problems: mut found, .. } = gatherer;
+        let variants = variant::names(&tree);
+        let Cast { tree, foreign, own } = variant::cast(tree, role)?;
         let parameter::Outcome { values: parameters, problems, unused } =
-            parameter::substitute(&mut script, &tree, choice)?;
+            parameter::substitute(&mut script, &tree, choice, role)?;
         found.extend(problems);
         let mut reader = read::Reader::new(&script);
-        let (system, indices) = reader.system(&tree);
+        let (mut system, mut indices) = reader.system(&tree);
+        system.level = reader.level(&tree, role);
         let read::Reader { problems, mended, .. } = reader;
         found.extend(problems);
+        for (at, surface) in indices.surfaces.iter().zip(&mut system.surfaces) {
+            if foreign.contains(at) && !own.contains(at) {
+                *surface = Surface { name: surface.name.take(), ..Surface::new(surface.on.clone()) };
+                indices.outlines.push(*at);
+            }
+        }
         let (path, sha256) = (path.to_path_buf(), digest(bytes));
-        let document = Document { path, sha256, system, parameters, warnings: Vec::new(), script, tree, indices };
-        let checked = document.checked(found.is_empty());
+        let warnings = Vec::new();
+        let document = Document { path, sha256, system, parameters, variants, warnings, script, tree, indices };
+        let checked = document.checked(found.is_empty() && role == Role::Alone);
         found.extend(checked.into_iter().filter(|problem| !read::is_mended(&mended, problem)));
         if !found.iter().any(Problem::is_error) {
             found.extend(unused);

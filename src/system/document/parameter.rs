@@ -5,7 +5,8 @@
 
 use super::manuscript::Manuscript;
 use super::names::Names;
-use super::tree::{Node, Shape};
+use super::tree::{Field, Node, Shape};
+use super::variant::Role;
 use crate::error::{Error, Problem, did_you_mean};
 use crate::system::expression::{Quantity, Value, evaluate, is_name};
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,8 +20,10 @@ const LONGEST: usize = 50;
 pub struct Choice {
     /// A name in `configurations`.
     pub configuration: Option<String>,
-    /// Parameters and their expressions, over those of the configuration.
+    /// Parameters and their expressions, over those of the configuration and of the variant.
     pub set: Vec<(String, String)>,
+    /// One of `variants`.
+    pub variant: Option<String>,
 }
 
 /// Where a parameter gets its value.
@@ -72,7 +75,7 @@ pub struct Outcome {
 ///
 /// # Errors
 /// [`Error::Usage`] if the choice names what is not there, or sets a parameter to what is no expression.
-pub fn substitute(script: &mut Manuscript, root: &Node, choice: &Choice) -> Result<Outcome, Error> {
+pub fn substitute(script: &mut Manuscript, root: &Node, choice: &Choice, role: Role) -> Result<Outcome, Error> {
     let mut workshop = Workshop {
         script,
         definitions: BTreeMap::new(),
@@ -88,13 +91,15 @@ pub fn substitute(script: &mut Manuscript, root: &Node, choice: &Choice) -> Resu
     let mut readings = Vec::new();
     if let Shape::Fields(sections) = &root.shape {
         let reserved = ["include", "parameters", "configurations"];
-        for section in sections.iter().filter(|section| !reserved.contains(&section.name.as_str())) {
+        // What a role takes of the variants stands in its other sections.
+        let taken = |section: &&Field| role != Role::Alone && section.name == "variants";
+        for section in sections.iter().filter(|s| !reserved.contains(&s.name.as_str()) && !taken(s)) {
             workshop.walk(&section.value, &section.name, &mut readings);
         }
     }
     let value = |name: &String| Some((name.clone(), workshop.value(name)?.text()));
     let values = names.iter().filter_map(value).collect();
-    let unused = workshop.unused(&names);
+    let unused = if role == Role::Alone { workshop.unused(&names) } else { Vec::new() };
     let Workshop { problems, refused, .. } = workshop;
     if let Some(what) = refused {
         return Err(Error::Usage(what));

@@ -4,6 +4,7 @@ use super::entry::{self, Fault};
 use super::manuscript::Manuscript;
 use super::names::Names;
 use super::tree::{self, Node, Shape, Step};
+use super::variant::Level;
 use super::{Indices, System};
 use crate::error::{Problem, Span, did_you_mean};
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -16,6 +17,7 @@ pub const SECTIONS: &[&str] = &[
     "include",
     "parameters",
     "configurations",
+    "variants",
     "geometry",
     "elements",
     "aliases",
@@ -57,6 +59,7 @@ impl<'a> Reader<'a> {
         // Expressions are worked out before this; names are read here.
         let _: Names<IgnoredAny> = self.map(root, "parameters");
         let _: Names<BTreeMap<String, IgnoredAny>> = self.map(root, "configurations");
+        self.variants(root);
         let (geometry, geometry_at) = self.list(root, "geometry");
         let (configure, configure_at) = self.list(root, "configure");
         let (surfaces, surfaces_at) = self.list(root, "surfaces");
@@ -77,8 +80,10 @@ impl<'a> Reader<'a> {
             detectors: self.map(root, "detectors"),
             targets: self.map(root, "targets"),
             run: self.single(root, "run").unwrap_or_default(),
+            level: Level::default(),
         };
-        (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at })
+        let outlines = Vec::new();
+        (system, Indices { geometry: geometry_at, configure: configure_at, surfaces: surfaces_at, outlines })
     }
 
     /// Refuses what is not a system, and sections that are unknown or given twice.
@@ -168,13 +173,14 @@ impl<'a> Reader<'a> {
         apart.then(|| format!("the other is in {}:{line}:{column}", page.name.display()))
     }
 
-    fn wrong_shape(&mut self, node: &Node, section: &str, expected: &str) {
+    /// A section that is neither list nor map as it should be.
+    pub fn wrong_shape(&mut self, node: &Node, section: &str, expected: &str) {
         let problem = Problem::error(format!("section `{section}` has the wrong form")).expecting(expected);
         self.push(node.start..node.end, section, problem);
     }
 
     /// One entry of the document.
-    fn entry<T: DeserializeOwned>(&mut self, node: &Node, path: &str) -> Option<T> {
+    pub fn entry<T: DeserializeOwned>(&mut self, node: &Node, path: &str) -> Option<T> {
         let entry = entry::read(&self.script.read(node.start..node.end));
         for fault in &entry.faults {
             self.fault(node, path, fault);
@@ -201,7 +207,8 @@ impl<'a> Reader<'a> {
         self.mended.push(path);
     }
 
-    fn push(&mut self, range: Range<usize>, path: &str, problem: Problem) {
+    /// Takes a problem down.
+    pub fn push(&mut self, range: Range<usize>, path: &str, problem: Problem) {
         if self.problems.len() >= MOST {
             return;
         }

@@ -267,6 +267,15 @@ impl Scatter {
         }
     }
 
+    /// True if a part of it mirrors and refracts by facets: it has no level.
+    pub fn has_facets(&self) -> bool {
+        match self {
+            Scatter::Microfacet { .. } => true,
+            Scatter::Sum(parts) => parts.iter().any(Scatter::has_facets),
+            _ => false,
+        }
+    }
+
     /// True if a part of it is the scatter of a shape alone, to be scaled by the reflectance and transmittance of the coating.
     pub fn is_of_shape(&self) -> bool {
         match self {

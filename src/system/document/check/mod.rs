@@ -7,7 +7,7 @@ mod optics;
 mod scatter;
 
 use super::tree::Shape;
-use super::{About, Body, Document, Run, read};
+use super::{About, Body, Document, Run, read, variant};
 use crate::error::{Problem, did_you_mean};
 use crate::system::units::Wavelength;
 use std::collections::BTreeSet;
@@ -216,9 +216,11 @@ impl<'a> Checker<'a> {
 
     /// Definitions that nothing refers to.
     fn unused(&mut self) {
+        let mentioned = variant::mentioned(&self.document.tree);
         for section in [Section::Media, Section::Coatings, Section::Scatter, Section::Targets] {
             for name in self.defined(section.name()) {
-                self.require(self.used.contains(&(section, name)), &format!("{}[{name:?}]", section.name()), || {
+                let used = self.used.contains(&(section, name)) || mentioned.contains(name);
+                self.require(used, &format!("{}[{name:?}]", section.name()), || {
                     Problem::warning(format!("{} {name:?} is never used", section.noun()))
                 });
             }

@@ -89,7 +89,9 @@ impl<'a> Checker<'a> {
         for (at, surface) in document.indices.surfaces.iter().zip(&document.system.surfaces) {
             let path = format!("surfaces[{at}]");
             self.selector(&surface.on, &format!("{path}.on"));
-            self.surface(surface, &path);
+            if !document.indices.outlines.contains(at) {
+                self.surface(surface, &path);
+            }
         }
         if let Some(finish) = &document.system.default {
             self.finish(finish, "default");

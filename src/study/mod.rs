@@ -1,0 +1,6 @@
+//! Many answers about one system: what is asked of several runs, or of several lanes of one.
+
+pub mod compare;
+pub mod record;
+pub mod sensitivity;
+pub mod verdict;
