@@ -75,6 +75,9 @@ mod tests {
         fields::<Surface>();
         fields::<Finish>();
         fields::<Source>();
+        fields::<Sweep>();
+        fields::<Mask>();
+        options::<Angles>();
         fields::<Detector>();
         fields::<Run>();
         fields::<Roulette>();

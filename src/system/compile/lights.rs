@@ -16,11 +16,21 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Every source of the document.
 pub fn sources(shop: &mut Shop, assembly: &Assembly) -> Vec<Source> {
     let document = shop.document;
-    document.system.sources.iter().filter_map(|(name, written)| source(shop, assembly, name, written)).collect()
+    document
+        .system
+        .sources
+        .iter()
+        .filter_map(|(name, written)| source(shop, assembly, (&format!("sources[{name:?}]"), name), written))
+        .collect()
 }
 
-fn source(shop: &mut Shop, assembly: &Assembly, name: &str, written: &written::Source) -> Option<Source> {
-    let path = format!("sources[{name:?}]");
+/// A source under this name, written at this path of the document.
+pub fn source(
+    shop: &mut Shop,
+    assembly: &Assembly,
+    (path, name): (&str, &str),
+    written: &written::Source,
+) -> Option<Source> {
     let at = written.at.map_or(DVec3::ZERO, |at| at.0) - assembly.shift;
     let beam = beam(written, at, assembly.shift);
     let axis = written.axis.map(|a| a.0).or(beam).unwrap_or(DVec3::Z);
@@ -34,8 +44,8 @@ fn source(shop: &mut Shop, assembly: &Assembly, name: &str, written: &written::S
         None if on_node && written.axis.is_none() => None,
         None => Some(frame),
     };
-    let extent = extent(shop, assembly, &path, written, frame, at, beam)?;
-    let flux = flux(shop, &path, written, &extent, &frame, beam)?;
+    let extent = extent(shop, assembly, path, written, frame, at, beam)?;
+    let flux = flux(shop, path, written, &extent, &frame, beam)?;
     let reach = match &extent {
         Extent::Flat { outline, .. } => outline.reach(),
         Extent::Mesh(_) => f64::INFINITY,

@@ -9,12 +9,14 @@ mod coatings;
 mod configure;
 mod exact;
 mod lights;
+mod mask;
 mod media;
 mod models;
 mod parts;
 mod receivers;
 mod scatter;
 mod scatterer;
+mod sweep;
 mod targets;
 pub mod understanding;
 
@@ -28,11 +30,13 @@ use crate::settings::{Guidance, Roulette, Settings, Trace, Until};
 use assembly::Assembly;
 pub use coated::{Coated, coated};
 use glam::DVec3;
+pub use mask::Mask;
 pub use parts::{parts_of_file, parts_of_system};
 pub use scatterer::{Scatterer, scatterer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+pub use sweep::Sweep;
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
@@ -47,6 +51,8 @@ pub struct Compiled {
     pub parameters: BTreeMap<String, String>,
     /// What is assumed of the finishes of the built-in library, a line each.
     pub finishes: Vec<String>,
+    /// Which sources are sweeps, and what is asked of them.
+    pub sweeps: Vec<Sweep>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -144,7 +150,8 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     exact::mason::faces(&mut shop, &mut assembly);
     let watched = receivers::detectors(&mut shop, &assembly);
     let targets = targets::targets(&mut shop, &assembly);
-    let sources = lights::sources(&mut shop, &assembly);
+    let mut sources = lights::sources(&mut shop, &assembly);
+    let sweeps = sweep::sweeps(&mut shop, &assembly, &watched, &mut sources);
     coatings::ranges(&mut shop, &coatings, &sources);
     if !sources.is_empty() {
         scatter::ranges(&mut shop, &sources);
@@ -185,7 +192,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     }
     let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
     let finishes = scatter::assumptions(document);
-    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes }, assembly))
+    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps }, assembly))
 }
 
 fn stem(document: &Document) -> String {

@@ -24,6 +24,7 @@ mod scatter;
 mod source;
 mod stack;
 mod surface;
+mod sweep;
 mod target;
 mod tree;
 
@@ -43,6 +44,7 @@ pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use stack::{Layer, Thickness};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
+pub use sweep::{Angles, Mask, Sweep, degrees};
 pub use target::Target;
 
 use crate::error::{Error, Problem, Span};
@@ -85,12 +87,22 @@ pub struct System {
     pub default: Option<Finish>,
     /// Light sources by name.
     pub sources: Names<Source>,
+    /// Sources at many angles by name.
+    pub sweeps: Names<Sweep>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
     /// What surfaces may aim at, by name.
     pub targets: Names<Target>,
     /// How it is traced.
     pub run: Run,
+}
+
+impl System {
+    /// The spectra of all sources.
+    pub fn spectra(&self) -> impl Iterator<Item = &Spectrum> {
+        let sources = self.sources.iter().map(|(_, source)| &source.spectrum);
+        sources.chain(self.sweeps.iter().map(|(_, sweep)| &sweep.spectrum))
+    }
 }
 
 /// A system and the text it was read from.
@@ -264,6 +276,9 @@ impl Document {
         }
         for (name, scatter) in self.system.scatter.iter() {
             tables(scatter, &format!("scatter[{name:?}]"), &mut files);
+        }
+        for (name, sweep) in self.system.sweeps.iter() {
+            files.extend(sweep.mask.iter().map(|mask| (format!("sweeps[{name:?}].mask.file"), mask.file.as_path())));
         }
         let missing = files.into_iter().filter(|(_, file)| !self.resolve(file).is_file());
         missing.map(|(path, file)| self.problem(&path, no_file(file, &self.resolve(file)))).collect()

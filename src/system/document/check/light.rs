@@ -11,7 +11,7 @@ const MOST_BINS: u64 = 1 << 26;
 impl Checker<'_> {
     pub(super) fn sources(&mut self) {
         let document = self.document;
-        let none = self.defined("sources").is_empty();
+        let none = self.defined("sources").is_empty() && self.defined("sweeps").is_empty();
         self.require(!none, "sources", || {
             Problem::error("the system has no light source").expecting("`sources: {..}`")
         });
@@ -26,7 +26,7 @@ impl Checker<'_> {
     }
 
     /// Either a flux or an irradiance, and an area for the latter.
-    fn power(&mut self, source: &Source, path: &str) {
+    pub(super) fn power(&mut self, source: &Source, path: &str) {
         match (source.flux, source.irradiance) {
             (Some(flux), None) => self.positive(flux.0, &format!("{path}.flux")),
             (None, Some(irradiance)) => {
@@ -49,7 +49,7 @@ impl Checker<'_> {
         }
     }
 
-    fn extent(&mut self, source: &Source, path: &str) {
+    pub(super) fn extent(&mut self, source: &Source, path: &str) {
         let at = format!("{path}.extent");
         match &source.extent {
             Extent::Point => {}
@@ -109,7 +109,7 @@ impl Checker<'_> {
         }
     }
 
-    fn not_parallel(&mut self, axis: Direction, x: Direction, path: &str, name: &str) {
+    pub(super) fn not_parallel(&mut self, axis: Direction, x: Direction, path: &str, name: &str) {
         // Below 1e-6 rad what is left of x after making it perpendicular is mostly rounding of the text.
         self.require(axis.0.cross(x.0).length() > 1e-6, path, || {
             Problem::error(format!("`x` is parallel to the {name}")).expecting("another direction")
@@ -152,7 +152,7 @@ impl Checker<'_> {
         }
     }
 
-    fn spectrum(&mut self, spectrum: &Spectrum, path: &str) {
+    pub(super) fn spectrum(&mut self, spectrum: &Spectrum, path: &str) {
         match spectrum {
             Spectrum::Line(wavelength) => self.wavelength(*wavelength, path),
             Spectrum::Lines(lines) => {

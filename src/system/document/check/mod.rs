@@ -5,6 +5,7 @@ mod coating;
 mod light;
 mod optics;
 mod scatter;
+mod sweep;
 
 use super::tree::Shape;
 use super::{About, Body, Document, Run, read};
@@ -73,6 +74,7 @@ impl Document {
         checker.scatter();
         checker.surfaces();
         checker.sources();
+        checker.sweeps();
         checker.detectors();
         checker.targets();
         checker.run(&self.system.run);
