@@ -29,9 +29,14 @@
 //! A module uses what stands below it; modules of one row do not know each other. `tests/layers.rs` holds it.
 //!
 //! ```text
-//!      system              transport             report
-//!   document, glTF,     walk, interaction,    maps, tables,
-//!   compiler            book, path table      page, messages
+//!                           report
+//!                    maps, tables, page, messages
+//! ─────────────────────────────────────────────────────────────
+//!                           study
+//!                    comparisons of variants
+//! ─────────────────────────────────────────────────────────────
+//!            system                      transport
+//!   document, glTF, compiler    walk, interaction, path table
 //! ─────────────────────────────────────────────────────────────
 //!                           scene
 //! ─────────────────────────────────────────────────────────────
@@ -77,6 +82,7 @@ pub mod report;
 pub mod scene;
 pub mod settings;
 pub mod source;
+pub mod study;
 pub mod surface;
 pub mod system;
 pub mod tally;

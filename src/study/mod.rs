@@ -1,0 +1,3 @@
+//! Many answers about one system: what is asked of several runs, or of several lanes of one.
+
+pub mod pst;
