@@ -10,6 +10,7 @@ pub mod fit;
 pub mod fit_bsdf;
 pub mod import;
 mod optics;
+pub mod pst;
 pub mod ray;
 pub mod run;
 pub mod schema;
@@ -46,6 +47,8 @@ Example:
 pub enum Verb {
     /// Trace a system and write a report
     Run(run::RunArgs),
+    /// Trace the sweeps of a system: point source transmittance over angle, against what is required
+    Pst(pst::PstArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event

@@ -54,7 +54,7 @@ Exit code: 0 done, 3 done but not to be trusted (the report says why), 64 usage,
 66 missing file, 74 report not writable, 130 Ctrl-C, 143 terminated.";
 
 /// A number of rays: 1000000, 1_000_000 or 1e6.
-fn count(text: &str) -> Result<u64, String> {
+pub fn count(text: &str) -> Result<u64, String> {
     let plain = text.replace('_', "");
     let number = plain.parse::<f64>().map_err(|_| "expected a number such as 1000000 or 1e6".to_string())?;
     if number >= 1.0 && number <= (1u64 << 48) as f64 && number.fract() == 0.0 {
@@ -105,7 +105,7 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
 }
 
 /// Makes the folder and tries it with a file that vanishes.
-fn writable(folder: &Path) -> Result<(), Error> {
+pub fn writable(folder: &Path) -> Result<(), Error> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     tried.map(drop).map_err(|source| Error::Io { path: folder.into(), source })
 }
@@ -152,7 +152,8 @@ fn until(text: &str, scene: &Scene) -> Result<Until, Error> {
     Ok(Until { detector, relative: wanted.relative })
 }
 
-fn host() -> String {
+/// System and cores.
+pub fn host() -> String {
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     format!("{} {}, {cores} cores", std::env::consts::OS, std::env::consts::ARCH)
 }

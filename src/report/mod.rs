@@ -21,6 +21,7 @@ mod npy;
 mod paths;
 mod picture;
 pub mod problems;
+pub mod pst;
 mod share;
 mod summary;
 mod text;

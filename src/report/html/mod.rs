@@ -8,8 +8,11 @@ mod ledger;
 mod number;
 mod overview;
 mod paths;
+mod pst;
 mod reproduce;
 mod section;
+
+pub use pst::{curve_picture, pst_page, sky_picture};
 
 use crate::tally::results::{Results, RunInfo};
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -86,6 +86,17 @@ pub struct Curve {
     pub trusted: bool,
 }
 
+/// All curves of a system: the same bits for the same files, seed and rays.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sweeps {
+    pub system: String,
+    pub curves: Vec<Curve>,
+    /// SHA-256 of every file that was read, by name as written.
+    pub inputs: BTreeMap<String, String>,
+    /// Values of the system's parameters by name.
+    pub parameters: BTreeMap<String, String>,
+}
+
 /// Share of the PST in one batch above which its error is a guess.
 const BRIGHTEST: f64 = 0.25;
 

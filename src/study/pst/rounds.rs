@@ -75,7 +75,7 @@ pub fn trace(
     let mut rounds: Vec<Round> = Vec::new();
     for number in 0.. {
         let before = if number == 0 { 0 } else { FIRST << (number - 1) };
-        let open: Vec<usize> = (0..plan.sweep.directions()).filter(|&d| !precise(plan, &rounds, d)).collect();
+        let open = plan.open(&rounds);
         if before >= plan.most || open.is_empty() {
             break;
         }
@@ -91,9 +91,15 @@ pub fn trace(
     rounds
 }
 
-fn precise(plan: &Plan, rounds: &[Round], direction: usize) -> bool {
-    let seen = Seen::of_all(rounds, direction);
-    seen.contributing >= FEWEST && seen.flux_w.error <= plan.until * seen.flux_w.mean
+impl Plan<'_> {
+    /// Directions that are not yet known well enough.
+    pub fn open(&self, rounds: &[Round]) -> Vec<usize> {
+        let precise = |direction: usize| {
+            let seen = Seen::of_all(rounds, direction);
+            seen.contributing >= FEWEST && seen.flux_w.error <= self.until * seen.flux_w.mean
+        };
+        (0..self.sweep.directions()).filter(|&direction| !precise(direction)).collect()
+    }
 }
 
 /// One round over the directions `open`, with so many rays each; `None` if it was stopped.
