@@ -14,6 +14,7 @@ fn main() -> ExitCode {
     let done = match cli.verb {
         Verb::Run(args) => cli::run::run(&args),
         Verb::Pst(args) => cli::pst::pst(&args),
+        Verb::Glare(args) => cli::glare::glare(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
         Verb::Bsdf(args) => cli::bsdf::bsdf(&args),

@@ -76,6 +76,7 @@ mod tests {
         fields::<Finish>();
         fields::<Source>();
         fields::<Sweep>();
+        fields::<Glare>();
         fields::<Mask>();
         options::<Angles>();
         fields::<Detector>();

@@ -19,6 +19,7 @@ fn whole(out: &mut String, sweeps: &Sweeps, went: &Went) -> fmt::Result {
     for curve in &sweeps.curves {
         heading(out, curve, went)?;
         table(out, curve)?;
+        sky(out, curve)?;
         verdict(out, curve)?;
         for warning in &curve.warnings {
             writeln!(out, "warning: {warning}")?;
@@ -92,6 +93,19 @@ fn verdict(out: &mut String, curve: &Curve) -> fmt::Result {
         Some(verdict) => writeln!(out, "{}: {verdict} ({mask}, 95 % confidence at each angle)", curve.sweep),
         None => writeln!(out, "{}: {mask} requires nothing at these angles", curve.sweep),
     }
+}
+
+fn sky(out: &mut String, curve: &Curve) -> fmt::Result {
+    let Some(sky) = &curve.sky else { return Ok(()) };
+    let solid = measured(sky.stray_sr.mean, sky.stray_sr.error);
+    let other = measured(rounded(sky.logarithmic_sr), 0.0);
+    let around =
+        if sky.around_deg < 359.9 { format!(" over {:.0} deg of azimuth", sky.around_deg) } else { String::new() };
+    writeln!(
+        out,
+        "uniform sky from {} to {} deg{around}: stray irradiance {solid} sr x its radiance ({other} with log(PST) linear between angles)",
+        sky.from_deg, sky.to_deg
+    )
 }
 
 fn value(point: &Point) -> String {

@@ -12,10 +12,12 @@
 mod kept;
 mod mask;
 mod rounds;
+mod sky;
 
 pub use kept::{Kept, fingerprint};
 pub use mask::{Required, Verdict};
 pub use rounds::{Plan, Round, Seen, trace};
+pub use sky::Sky;
 
 use crate::packet::Class;
 use crate::scene::Scene;
@@ -29,7 +31,7 @@ use std::collections::BTreeMap;
 pub const GROUPS: [&str; 5] = ["signal", "direct leak", "ghosts", "one scatter", "more scatters"];
 
 /// The transmittance in one direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// From the boresight.
     pub angle_deg: f64,
@@ -74,6 +76,8 @@ pub struct Curve {
     pub rays: u64,
     /// Angle by angle, azimuth by azimuth.
     pub points: Vec<Point>,
+    /// Stray light of a uniform sky between the first and the last angle; null if there is one angle.
+    pub sky: Option<Sky>,
     /// File of what is required.
     pub mask: Option<String>,
     /// Rows of that file: angle, deg, and limit.
@@ -112,9 +116,12 @@ impl Curve {
             (0..sweep.directions()).map(|direction| point(scene, sweep, rounds, direction, scale)).collect();
         refer_to_axis(&mut points);
         let mut warnings: Vec<String> = rounds.iter().flat_map(|round| round.warnings.clone()).collect();
-        warnings.extend(points.iter().filter_map(caution));
+        let several = sweep.azimuths.len() > 1;
+        warnings.extend(points.iter().filter_map(|point| caution(point, several)));
         let verdict = sweep.mask.as_ref().and_then(|_| Verdict::of_all(&points));
+        let sky = Sky::of(&cuts(&points));
         Curve {
+            sky,
             sweep: sweep.label.clone(),
             detector: detector.label.clone(),
             area_m2: area,
@@ -134,8 +141,12 @@ impl Curve {
 
     /// The points of each azimuth, in the order of the angles.
     pub fn cuts(&self) -> Vec<&[Point]> {
-        self.points.chunk_by(|a, b| a.azimuth_deg == b.azimuth_deg).collect()
+        cuts(&self.points)
     }
+}
+
+fn cuts(points: &[Point]) -> Vec<&[Point]> {
+    points.chunk_by(|a, b| a.azimuth_deg == b.azimuth_deg).collect()
 }
 
 fn point(scene: &Scene, sweep: &Sweep, rounds: &[Round], direction: usize, scale: f64) -> Point {
@@ -209,12 +220,12 @@ fn refer_to_axis(points: &mut [Point]) {
 }
 
 /// Why the error of a point is a guess, in words.
-fn caution(point: &Point) -> Option<String> {
+fn caution(point: &Point, several: bool) -> Option<String> {
     (point.brightest_batch > BRIGHTEST).then(|| {
+        let azimuth = if several { format!(", azimuth {} deg", point.azimuth_deg) } else { String::new() };
         format!(
-            "at {} deg, azimuth {} deg, one batch brought {:.0} % of the light, the error bar cannot be trusted: more rays are needed",
+            "at {} deg{azimuth}, one batch brought {:.0} % of the light, the error bar cannot be trusted: more rays are needed",
             point.angle_deg,
-            point.azimuth_deg,
             100.0 * point.brightest_batch
         )
     })

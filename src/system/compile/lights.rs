@@ -81,6 +81,7 @@ fn pattern(written: &written::Angular) -> Pattern {
         written::Angular::Collimated { .. } => Pattern::Collimated,
         written::Angular::Cone { half_angle } => Pattern::Cone { half_angle: half_angle.0 },
         written::Angular::AngularDiameter(angle) => Pattern::Radiance { half_angle: 0.5 * angle.0 },
+        written::Angular::Ring { inner, outer } => Pattern::Ring { inner: 0.5 * inner.0, outer: 0.5 * outer.0 },
         written::Angular::Lambertian => Pattern::Radiance { half_angle: FRAC_PI_2 },
         written::Angular::Gaussian { half_angle } => Pattern::Gaussian { half_angle: half_angle.0 },
         written::Angular::Isotropic => Pattern::Cone { half_angle: PI },
@@ -199,7 +200,7 @@ fn flux(
     let projected = match (extent, beam) {
         // Weights of a mesh are projected already.
         (Extent::Flat { frame, .. }, Some(beam)) => extent.area() * frame.z.dot(beam).abs(),
-        (Extent::Flat { .. }, None) if matches!(written.angular, written::Angular::AngularDiameter(_)) => extent.area(),
+        (Extent::Flat { .. }, None) if written.angular.is_sky() => extent.area(),
         (Extent::Mesh(_), Some(_)) => extent.area(),
         _ => {
             let problem = Problem::error("irradiance is that of a beam: this pattern has none");

@@ -8,6 +8,7 @@ mod coated;
 mod coatings;
 mod configure;
 mod exact;
+mod glare;
 mod lights;
 mod mask;
 mod media;
@@ -27,9 +28,11 @@ use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Guidance, Roulette, Settings, Trace, Until};
+use crate::source::Source;
 use assembly::Assembly;
 pub use coated::{Coated, coated};
 use glam::DVec3;
+pub use glare::Glare;
 pub use mask::Mask;
 pub use parts::{parts_of_file, parts_of_system};
 pub use scatterer::{Scatterer, scatterer};
@@ -53,6 +56,8 @@ pub struct Compiled {
     pub finishes: Vec<String>,
     /// Which sources are sweeps, and what is asked of them.
     pub sweeps: Vec<Sweep>,
+    /// Fields with a black patch.
+    pub glare: Vec<Glare>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -152,9 +157,11 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let targets = targets::targets(&mut shop, &assembly);
     let mut sources = lights::sources(&mut shop, &assembly);
     let sweeps = sweep::sweeps(&mut shop, &assembly, &watched, &mut sources);
-    coatings::ranges(&mut shop, &coatings, &sources);
-    if !sources.is_empty() {
-        scatter::ranges(&mut shop, &sources);
+    let glare = glare::glare(&mut shop, &assembly, &watched);
+    let lit: Vec<Source> = sources.iter().chain(glare.iter().flat_map(|glare| &glare.sources)).cloned().collect();
+    coatings::ranges(&mut shop, &coatings, &lit);
+    if !lit.is_empty() {
+        scatter::ranges(&mut shop, &lit);
     }
     if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
         shop.fault("sources", Problem::error("nothing shines").expecting("at least one source"));
@@ -192,7 +199,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     }
     let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
     let finishes = scatter::assumptions(document);
-    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps }, assembly))
+    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps, glare }, assembly))
 }
 
 fn stem(document: &Document) -> String {

@@ -51,7 +51,7 @@ pub fn sweeps(
     for (name, written) in document.system.sweeps.iter() {
         let path = format!("sweeps[{name:?}]");
         let mask = written.mask.as_ref().and_then(|mask| super::mask::read(shop, &path, mask));
-        let Some(detector) = watched(shop, &path, written, detectors) else { continue };
+        let Some(detector) = watched(shop, &path, written.detector.as_deref(), detectors) else { continue };
         let sweep = Sweep {
             label: name.into(),
             first: sources.len(),
@@ -92,18 +92,13 @@ fn emit(
     })
 }
 
-/// The detector that a sweep asks about.
-fn watched(
-    shop: &mut Shop,
-    path: &str,
-    written: &written::Sweep,
-    detectors: &[(Detector, Vec<usize>)],
-) -> Option<usize> {
-    let is_meant = |detector: &Detector| written.detector.as_ref().is_none_or(|name| *name == detector.label);
+/// The detector whose mean irradiance is asked for: that of the name, or the only one.
+pub fn watched(shop: &mut Shop, path: &str, name: Option<&str>, detectors: &[(Detector, Vec<usize>)]) -> Option<usize> {
+    let is_meant = |detector: &Detector| name.is_none_or(|name| name == detector.label);
     let index = detectors.iter().position(|(detector, _)| is_meant(detector))?;
     let detector = &detectors[index].0;
     if detector.grid.unit() != "W/m2" {
-        let problem = Problem::error(format!("a sweep asks for irradiance, and {:?} maps directions", detector.label));
+        let problem = Problem::error(format!("irradiance is asked for, and {:?} maps directions", detector.label));
         shop.fault(path, problem.expecting("a detector with `quantity: Irradiance`"));
         return None;
     }

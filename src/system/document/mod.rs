@@ -13,6 +13,7 @@ mod element;
 mod entry;
 mod exact;
 mod geometry;
+mod glare;
 mod include;
 mod manuscript;
 mod medium;
@@ -35,6 +36,7 @@ pub use detector::{Bins, Detector, Quantity, Receiver};
 pub use element::{Body, Element, Optical};
 pub use exact::{Exact, Form, Relative};
 pub use geometry::{Geometry, Up};
+pub use glare::Glare;
 pub use medium::Medium;
 pub use names::Names;
 pub use parameter::Choice;
@@ -89,6 +91,8 @@ pub struct System {
     pub sources: Names<Source>,
     /// Sources at many angles by name.
     pub sweeps: Names<Sweep>,
+    /// Fields with a black patch by name.
+    pub glare: Names<Glare>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
     /// What surfaces may aim at, by name.
@@ -98,10 +102,11 @@ pub struct System {
 }
 
 impl System {
-    /// The spectra of all sources.
+    /// The spectra of all light.
     pub fn spectra(&self) -> impl Iterator<Item = &Spectrum> {
         let sources = self.sources.iter().map(|(_, source)| &source.spectrum);
-        sources.chain(self.sweeps.iter().map(|(_, sweep)| &sweep.spectrum))
+        let sweeps = self.sweeps.iter().map(|(_, sweep)| &sweep.spectrum);
+        sources.chain(sweeps).chain(self.glare.iter().map(|(_, glare)| &glare.spectrum))
     }
 }
 

@@ -83,11 +83,16 @@ fn card(index: usize, curve: &Curve) -> Markup {
             }
             div.light {
                 @if let Some((point, required)) = tightest {
-                    p.verdict.plain { "Smallest margin: a factor of " (plain(required.margin, "")) " at " (place(curve, point)) "." }
+                    p.verdict.plain { "Smallest margin: a factor of " (short(required.margin)) " at " (place(curve, point)) "." }
                     p.verdict.plain { (count(curve)) }
                 }
                 @if let Some(point) = brightest { p.verdict.plain { "Largest PST: " (value(point)) " at " (place(curve, point)) "." } }
                 @if let Some(point) = faintest { p.verdict.plain { "Smallest PST: " (value(point)) " at " (place(curve, point)) "." } }
+                @if let Some(sky) = &curve.sky {
+                    p.verdict.plain { "A uniform sky from " (sky.from_deg) "° to " (sky.to_deg) "° "
+                        @if sky.around_deg < 359.9 { "over " (format!("{:.0}°", sky.around_deg)) " of azimuth " }
+                        "gives a stray irradiance of " (estimate(sky.stray_sr, "sr")) " × its radiance (" (short(sky.logarithmic_sr)) " with log PST linear between the angles)." }
+                }
                 p.verdict.plain { "Mean irradiance over " (curve.detector) ", " (plain(1e6 * curve.area_m2, "mm2")) ", over the irradiance across the beam; the image is in it. Requirements are about stray light." }
             }
         }
@@ -119,6 +124,11 @@ fn place(curve: &Curve, point: &Point) -> String {
 
 fn value(point: &Point) -> Markup {
     point.upper_limit.map_or_else(|| estimate(point.pst, ""), |upper| limit(upper, ""))
+}
+
+/// Three digits are enough for what is compared.
+fn short(value: f64) -> Markup {
+    plain(format!("{value:.2e}").parse().unwrap_or(value), "")
 }
 
 fn badge(verdict: Verdict) -> Markup {

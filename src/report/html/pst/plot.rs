@@ -161,13 +161,13 @@ impl Frame {
         pieces.collect()
     }
 
-    /// Thin curves of what the PST is made of.
+    /// Thin curves of what the PST is made of; that of the signal is broad, for the PST lies on it.
     fn classes(&self, points: &[Point]) -> Markup {
         html! {
             @for (group, tone) in TONES.iter().enumerate() {
                 @for run in points.split(|point| point.groups[group].mean <= 10f64.powi(self.y[0])) {
                     @let places: Vec<[f64; 2]> = run.iter().map(|p| [self.x(p.angle_deg), self.y(p.groups[group].mean)]).collect();
-                    (polyline(&places, tone, 1.4))
+                    (polyline(&places, tone, if group == 0 { 5.0 } else { 1.4 }))
                     @if let [[x, y]] = places[..] { circle cx=(px(x)) cy=(px(y)) r="2.2" fill=(tone) {} }
                 }
             }
@@ -218,11 +218,15 @@ fn legend(curve: &Curve, shown: &[(&[Point], &str)], all: usize) -> Markup {
     let mut rows: Vec<(String, &str, f64, &str)> = Vec::new();
     for (points, colour) in shown {
         let name = if single { "PST, all light".to_owned() } else { format!("azimuth {}°", points[0].azimuth_deg) };
-        rows.push((name, colour, 2.0, ""));
+        rows.push((name, colour, 2.0, "none"));
     }
     if single {
         let there = |group: &usize| shown[0].0.iter().any(|point| point.groups[*group].mean > 0.0);
-        rows.extend((0..GROUPS.len()).filter(there).map(|group| (GROUPS[group].to_owned(), TONES[group], 1.4, "")));
+        rows.extend(
+            (0..GROUPS.len())
+                .filter(there)
+                .map(|group| (GROUPS[group].to_owned(), TONES[group], if group == 0 { 5.0 } else { 1.4 }, "none")),
+        );
     }
     if !curve.mask_points.is_empty() {
         rows.push(("limit for stray light".into(), MASK, 1.6, "7 4"));
@@ -234,7 +238,7 @@ fn legend(curve: &Curve, shown: &[(&[Point], &str)], all: usize) -> Markup {
     let y = |row: usize| MARGIN[1] + 12.0 + 21.0 * row as f64;
     html! {
         @for (row, (name, colour, width, dash)) in rows.iter().enumerate() {
-            line x1=(px(left)) x2=(px(left + 22.0)) y1=(px(y(row))) y2=(px(y(row))) stroke=(colour) stroke-width=(width) stroke-dasharray=(dash) {}
+            line x1=(px(left)) x2=(px(left + 22.0)) y1=(px(y(row))) y2=(px(y(row))) style=(format!("stroke:{colour};stroke-width:{width};stroke-dasharray:{dash}")) {}
             text x=(px(left + 29.0)) y=(px(y(row) + 4.5)) fill="#161b22" { (name) }
         }
         @for (row, (_, name, tone)) in rings.iter().enumerate() {
@@ -259,7 +263,7 @@ fn polyline(places: &[[f64; 2]], colour: &str, width: f64) -> Markup {
 
 fn line([x1, y1]: [f64; 2], [x2, y2]: [f64; 2], colour: &str, width: f64) -> Markup {
     html! {
-        line x1=(px(x1)) y1=(px(y1)) x2=(px(x2)) y2=(px(y2)) stroke=(colour) stroke-width=(width) style=(format!("stroke:{colour};stroke-width:{width}")) {}
+        line x1=(px(x1)) y1=(px(y1)) x2=(px(x2)) y2=(px(y2)) style=(format!("stroke:{colour};stroke-width:{width}")) {}
     }
 }
 

@@ -1,7 +1,7 @@
 //! The numbers of a curve, azimuth by azimuth.
 
-use super::super::number::{estimate, plain};
-use super::{badge, value};
+use super::super::number::estimate;
+use super::{badge, short, value};
 use crate::study::pst::{Curve, GROUPS, Point};
 use maud::{Markup, html};
 
@@ -46,7 +46,7 @@ fn rows(curve: &Curve, points: &[Point]) -> Markup {
                     @if required {
                         @match &point.required {
                             Some(required) => {
-                                td.right { (plain(required.limit, "")) } td.right { "× " (plain(required.margin, "")) } td { (badge(required.verdict)) }
+                                td.right { (short(required.limit)) } td.right { "× " (short(required.margin)) } td { (badge(required.verdict)) }
                             }
                             None => { td.right.quiet { "none" } td {} td {} }
                         }

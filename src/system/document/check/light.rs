@@ -86,10 +86,10 @@ impl Checker<'_> {
             self.not_empty(node, &format!("{at}.nodes[{index}]"), "the name of the node");
         }
         self.range(margin >= 1.0 && margin.is_finite(), &format!("{at}.margin"), "a factor of at least 1");
-        let beam = matches!(source.angular, Angular::Collimated { .. } | Angular::AngularDiameter(_));
+        let beam = matches!(source.angular, Angular::Collimated { .. }) || source.angular.is_sky();
         self.require(beam, &at, || {
             Problem::error("`Cover` lies across a beam, and this source has none")
-                .expecting("`angular: Collimated(..)` or `AngularDiameter(..)`")
+                .expecting("`angular: Collimated(..)`, `AngularDiameter(..)` or `Ring(..)`")
         });
     }
 
@@ -122,9 +122,18 @@ impl Checker<'_> {
             Angular::Collimated { .. } => self.collimated(source, &at),
             Angular::Cone { half_angle } => self.angle(half_angle.0, (0.0, 180.0), &format!("{at}.half_angle")),
             Angular::AngularDiameter(diameter) => self.angle(diameter.0, (0.0, 180.0), &at),
+            Angular::Ring { inner, outer } => self.ring([inner.0, outer.0], &at),
             Angular::Gaussian { half_angle } => self.angle(half_angle.0, (0.0, 90.0), &format!("{at}.half_angle")),
             Angular::Lambertian | Angular::Isotropic => {}
         }
+    }
+
+    pub(super) fn ring(&mut self, [inner, outer]: [f64; 2], path: &str) {
+        self.angle(inner, (0.0, 180.0), &format!("{path}.inner"));
+        self.angle(outer, (0.0, 180.0), &format!("{path}.outer"));
+        self.require(inner < outer || outer <= 0.0, path, || {
+            Problem::error("this ring has no solid angle").expecting("`inner` below `outer`")
+        });
     }
 
     fn collimated(&mut self, source: &Source, path: &str) {

@@ -2,6 +2,7 @@
 
 mod bulk;
 mod coating;
+mod glare;
 mod light;
 mod optics;
 mod scatter;
@@ -75,6 +76,7 @@ impl Document {
         checker.surfaces();
         checker.sources();
         checker.sweeps();
+        checker.glare();
         checker.detectors();
         checker.targets();
         checker.run(&self.system.run);

@@ -27,7 +27,7 @@ impl<'a> Checker<'a> {
             self.angles(&sweep.angles, &format!("{path}.angles"));
             self.azimuths(sweep, &path);
             self.frame(sweep, &path);
-            self.watcher(sweep, &path);
+            self.watcher(&sweep.detector, &path);
         }
     }
 
@@ -93,8 +93,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn watcher(&mut self, sweep: &'a Sweep, path: &str) {
-        match &sweep.detector {
+    /// The detector whose mean irradiance is asked for: named, or the only one.
+    pub(super) fn watcher(&mut self, detector: &'a Option<String>, path: &str) {
+        match detector {
             Some(name) => self.refer(Section::Detectors, name, &format!("{path}.detector")),
             None => {
                 let names = self.defined("detectors");
@@ -104,7 +105,7 @@ impl<'a> Checker<'a> {
                         .expecting(format!("`detector:` with one of {}", names.join(", ")))
                 });
                 self.require(!names.is_empty(), path, || {
-                    Problem::error("a sweep needs a detector").expecting("`detectors: {..}`")
+                    Problem::error("a detector is needed here").expecting("`detectors: {..}`")
                 });
             }
         }
