@@ -245,10 +245,8 @@ fn files(folder: &Path) {
     let (json, page) = (read("pst.json"), read("pst.html"));
     let results = serde_json::from_str::<serde_json::Value>(&json).expect("JSON")["results"].clone();
     assert_eq!(results["curves"][0]["verdict"], "PASS");
-    assert!(
-        page.contains("<svg") && !page.contains("http://")
-            || page.matches("http").count() == page.matches("http://www.w3.org/2000/svg").count()
-    );
+    let own = page.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", "");
+    assert!(page.contains("<svg") && !own.contains("http"), "the page asks for something");
     assert_eq!(read("pst.csv").lines().count(), 4);
     assert!(read("pst_sky.svg").starts_with("<svg"));
     fs::write(folder.join("mask.csv"), "angle_deg,limit\n0,1e-6\n20,1e-6\n").expect("mask");
@@ -274,8 +272,8 @@ fn all_that_is_wrong_with_a_sweep_is_said_at_once() {
         problems(&wrong, good),
         [
             "system.ron:6:29: sweeps[\"sky\"].irradiance: \"0 W/m2\" is out of range; expected a value above 0",
-            "system.ron:6:136: sweeps[\"sky\"].up: `up` is parallel to the boresight; expected another direction",
-            "system.ron:6:157: sweeps[\"sky\"].detector: no detector \"sensr\"; did you mean \"sensor\"?",
+            "system.ron:6:122: sweeps[\"sky\"].up: `up` is parallel to the boresight; expected another direction",
+            "system.ron:6:145: sweeps[\"sky\"].detector: no detector \"sensr\"; did you mean \"sensor\"?",
             "system.ron:7:21: sweeps[\"sky\"].angles: an angle is out of range; expected angles from the boresight, 0 deg to 180 deg",
         ]
     );
