@@ -63,7 +63,7 @@ fn table(out: &mut String, curve: &Curve) -> fmt::Result {
         write!(out, "{:>15}", GROUPS[group])?;
     }
     if required {
-        write!(out, "{:>11}{:>10}  {}", "limit", "margin", "stray light")?;
+        write!(out, "{:>11}{:>10}  stray light", "limit", "margin")?;
     }
     writeln!(out)?;
     for point in &curve.points {
