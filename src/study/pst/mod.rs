@@ -27,8 +27,8 @@ use crate::tally::results::Estimate;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Classes as a curve shows them.
-pub const GROUPS: [&str; 5] = ["signal", "direct leak", "ghosts", "one scatter", "more scatters"];
+/// Classes as a curve shows them; direct light is a leak where there are optics.
+pub const GROUPS: [&str; 5] = ["signal", "direct", "ghosts", "one scatter", "more scatters"];
 
 /// The transmittance in one direction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

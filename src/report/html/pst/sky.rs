@@ -118,7 +118,7 @@ fn web(largest: f64) -> Markup {
     html! {
         @for (part, text) in ticks(0.0, largest, 4).into_iter().filter(|(part, _)| *part > 0.0) {
             circle cx=(CENTRE[0]) cy=(CENTRE[1]) r=(px(part * RADIUS)) fill="none" stroke="#fff" stroke-opacity="0.55" {}
-            text x=(px(CENTRE[0] + 4.0)) y=(px(CENTRE[1] - part * RADIUS + 14.0)) fill="#fff" stroke="#161b22" stroke-width="2.5" paint-order="stroke" { (text) "°" }
+            text x=(px(CENTRE[0] + 4.0)) y=(px(CENTRE[1] - part * RADIUS + 14.0)) style="fill:#fff;stroke:#161b22;stroke-width:2.5;paint-order:stroke" { (text) "°" }
         }
         circle cx=(CENTRE[0]) cy=(CENTRE[1]) r=(RADIUS) fill="none" stroke="#161b22" {}
         @for azimuth in (0..360).step_by(30) {
