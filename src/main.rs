@@ -15,6 +15,8 @@ fn main() -> ExitCode {
         Verb::Run(args) => cli::run::run(&args),
         Verb::Compare(args) => cli::compare::compare(&args),
         Verb::Sensitivity(args) => cli::sensitivity::sensitivity(&args),
+        Verb::Pst(args) => cli::pst::pst(&args),
+        Verb::Glare(args) => cli::glare::glare(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
         Verb::Bsdf(args) => cli::bsdf::bsdf(&args),

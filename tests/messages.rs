@@ -104,7 +104,7 @@ fn a_slip_of_the_pen_is_answered_with_what_was_meant() {
         (
             "Collimated",
             "Colimated",
-            r#"10:72: sources["sun"].angular: there is no `Colimated` here; expected one of `Collimated`, `Cone`, `AngularDiameter`, `Lambertian`, `Gaussian`, `Isotropic`; did you mean `Collimated`?"#,
+            r#"10:72: sources["sun"].angular: there is no `Colimated` here; expected one of `Collimated`, `Cone`, `AngularDiameter`, `Ring`, `Lambertian`, `Gaussian`, `Isotropic`; did you mean `Collimated`?"#,
         ),
         (
             r#"Node("Detector")"#,

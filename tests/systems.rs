@@ -171,7 +171,7 @@ fn the_double_gauss_keeps_its_stray_light() {
 fn the_star_tracker_shows_its_curve_over_ten_decades() {
     let results = hold("star_tracker");
     let sources = &results["system.ron"].detectors["sensor"].sources;
-    let flux = |angle: &str| sources[angle];
+    let flux = |angle: &str| sources[format!("sky {angle}").as_str()];
     for angle in ["10 deg", "21 deg", "30 deg", "40 deg", "50 deg"] {
         let (near, far) = (flux("1 deg"), flux(angle));
         assert!(far.mean > 0.0 && far.mean + 4.0 * far.error < 1e-8 * near.mean, "{angle}: {far:?}, 1 deg: {near:?}");

@@ -281,6 +281,9 @@ fn towards(source: &Source) -> String {
         }
         Pattern::Radiance { half_angle } if half_angle >= FRAC_PI_2 => format!("Lambertian about {axis}"),
         Pattern::Radiance { half_angle } => format!("constant radiance within {} deg of {axis}", degrees(half_angle)),
+        Pattern::Ring { inner, outer } => {
+            format!("constant radiance between {} and {} deg of {axis}", degrees(inner), degrees(outer))
+        }
         Pattern::Gaussian { half_angle } => {
             format!("a Gaussian of 1/e2 half-angle {} deg about {axis}", degrees(half_angle))
         }

@@ -9,8 +9,10 @@ pub mod export;
 pub mod finishes;
 pub mod fit;
 pub mod fit_bsdf;
+pub mod glare;
 pub mod import;
 mod optics;
+pub mod pst;
 pub mod ray;
 pub mod run;
 pub mod schema;
@@ -52,6 +54,10 @@ pub enum Verb {
     Compare(compare::CompareArgs),
     /// Say which surface to improve first
     Sensitivity(sensitivity::SensitivityArgs),
+    /// Trace the sweeps of a system: point source transmittance over angle, against what is required
+    Pst(pst::PstArgs),
+    /// Trace a uniform field with a black patch: veiling glare index
+    Glare(glare::GlareArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event

@@ -23,9 +23,9 @@ pub fn classes(detector: &DetectorResult) -> Vec<(&str, Estimate, String)> {
     rows.into_iter().zip(shares).map(|((name, flux), share)| (name, flux, share)).collect()
 }
 
-/// Flux by source, W, where there is more than one: names by the number that they begin with, then by letters.
+/// Flux by source, W, where there is more than one: names by the first number in them, then by letters.
 pub fn sources(detector: &DetectorResult) -> Vec<(&str, Estimate)> {
-    let number = |name: &str| name.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(f64::INFINITY);
+    let number = |name: &str| name.split(' ').find_map(|word| word.parse().ok()).unwrap_or(f64::INFINITY);
     let mut rows: Vec<_> = detector.sources.iter().map(|(name, flux)| (name.as_str(), *flux)).collect();
     rows.sort_by(|a, b| number(a.0).total_cmp(&number(b.0)));
     if rows.len() > 1 { rows } else { Vec::new() }

@@ -22,6 +22,7 @@ mod npy;
 mod paths;
 mod picture;
 pub mod problems;
+pub mod pst;
 pub mod sensitivity;
 mod share;
 mod summary;

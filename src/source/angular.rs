@@ -22,6 +22,8 @@ pub enum Pattern {
     /// Uniform radiance within `half_angle` (rad, <= pi/2) of z on a surface perpendicular to z: flux ~ cos theta dw.
     /// pi/2 is a Lambertian source; half of 0.533 deg is the Sun.
     Radiance { half_angle: f64 },
+    /// Uniform radiance between two half-angles (rad, <= pi/2), nothing within the inner: a field around a black patch.
+    Ring { inner: f64, outer: f64 },
     /// Intensity ~ exp(-2 tan^2 theta / tan^2 half_angle): Gaussian in the direction tangents.
     Gaussian { half_angle: f64 },
 }
@@ -46,6 +48,10 @@ impl Angular {
                 let place = half_angle.sin() * sampling::disc([u, v]);
                 DVec3::new(place.x, place.y, (1.0 - place.length_squared()).max(0.0).sqrt())
             }
+            Pattern::Ring { inner, outer } => {
+                let squared = inner.sin().powi(2) + u * ring(inner, outer);
+                about(squared.sqrt(), (1.0 - squared).max(0.0).sqrt())
+            }
             Pattern::Gaussian { half_angle } => {
                 let tangent = half_angle.tan() * (-0.5 * (1.0 - u).ln()).sqrt();
                 let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
@@ -61,6 +67,7 @@ impl Angular {
             Pattern::Collimated => 0.0,
             Pattern::Cone { half_angle } if inside(half_angle) => 0.25 / PI / (0.5 * half_angle).sin().powi(2),
             Pattern::Radiance { half_angle } if inside(half_angle) => direction.z / PI / half_angle.sin().powi(2),
+            Pattern::Ring { inner, outer } if inside(outer) && !inside(inner) => direction.z / PI / ring(inner, outer),
             Pattern::Gaussian { half_angle } if direction.z > 0.0 => {
                 let (cosine2, wide) = (direction.z * direction.z, half_angle.tan().powi(2));
                 let tangent2 = direction.truncate().length_squared() / cosine2;
@@ -69,4 +76,9 @@ impl Angular {
             _ => 0.0,
         }
     }
+}
+
+/// sin^2 outer - sin^2 inner, free of cancellation for narrow rings: the projected solid angle of a ring over pi.
+pub fn ring(inner: f64, outer: f64) -> f64 {
+    (outer - inner).sin() * (outer + inner).sin()
 }

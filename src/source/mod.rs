@@ -27,7 +27,7 @@ pub struct Polarization {
 }
 
 /// Something that shines.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source {
     pub label: String,
     /// Total, W.

@@ -32,6 +32,7 @@ impl Source {
             Pattern::Cone { half_angle } | Pattern::Radiance { half_angle } | Pattern::Gaussian { half_angle } => {
                 half_angle < NARROW
             }
+            Pattern::Ring { outer, .. } => outer < NARROW,
         };
         match (flat, narrow) {
             (true, true) if self.outside => Reach::Beam,
@@ -137,6 +138,7 @@ mod tests {
             Pattern::Radiance { half_angle: 1.2 },
             Pattern::Radiance { half_angle: 0.1 },
             Pattern::Gaussian { half_angle: 0.5 },
+            Pattern::Ring { inner: 0.4, outer: 1.2 },
         ] {
             let source = source(Outline::Disk { radius: 1.0 }, pattern);
             let (rings, fine, draws) = (400, 50, 200_000);

@@ -75,6 +75,10 @@ mod tests {
         fields::<Surface>();
         fields::<Finish>();
         fields::<Source>();
+        fields::<Sweep>();
+        fields::<Glare>();
+        fields::<Mask>();
+        options::<Angles>();
         fields::<Detector>();
         fields::<Run>();
         fields::<Roulette>();

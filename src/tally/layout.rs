@@ -91,7 +91,7 @@ impl Layout {
             .iter()
             .map(|bins| {
                 let first = next;
-                next += 2 + Class::COUNT + sources + bins;
+                next += 2 + Class::COUNT + sources * (1 + Class::COUNT) + bins;
                 first
             })
             .collect();
@@ -165,8 +165,13 @@ impl Layout {
         self.detectors[detector] + 2 + Class::COUNT + source
     }
 
+    /// Flux of a class on a detector from a source.
+    pub fn source_class(&self, detector: usize, source: usize, class: usize) -> usize {
+        self.source(detector, self.sources) + source * Class::COUNT + class
+    }
+
     pub fn bin(&self, detector: usize, bin: usize) -> usize {
-        self.detectors[detector] + 2 + Class::COUNT + self.sources + bin
+        self.source_class(detector, self.sources, bin)
     }
 
     /// Bins of a detector.
@@ -224,6 +229,7 @@ mod tests {
             slots.extend([layout.detector(d), layout.other(d)]);
             slots.extend((0..Class::COUNT).map(|c| layout.class(d, c)));
             slots.extend((0..4).map(|s| layout.source(d, s)));
+            slots.extend((0..4 * Class::COUNT).map(|i| layout.source_class(d, i / Class::COUNT, i % Class::COUNT)));
             slots.extend((0..layout.bins(d)).map(|b| layout.bin(d, b)));
             slots.extend(layout.stray(d).into_iter().flat_map(|first| [first, first + 1]));
             for event in [Event::Reflect, Event::Transmit, Event::Scatter, Event::Bulk] {

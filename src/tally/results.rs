@@ -2,13 +2,13 @@
 //!
 //! Everything here is the same bits for the same system, seed and rays, whatever the threads; times and hosts are kept apart.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 pub use crate::detector::{Axis, MapKind};
 
 /// A mean over batches with its standard error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Sample mean over the batches, in the unit of its context.
     pub mean: f64,

@@ -94,8 +94,10 @@ impl<'a, const V: usize> Book<'a, V> {
             return self.candidates.note(detector, ancestry, flux.into_iter().fold(0.0, f64::max));
         };
         self.live.add(self.layout.detector(detector), flux);
-        self.live.add(self.layout.class(detector, ancestry.class().index()), flux);
-        self.live.add(self.layout.source(detector, ancestry.source.into()), flux);
+        let (class, source) = (ancestry.class().index(), ancestry.source.into());
+        self.live.add(self.layout.class(detector, class), flux);
+        self.live.add(self.layout.source(detector, source), flux);
+        self.live.add(self.layout.source_class(detector, source, class), flux);
         self.live.add(self.layout.bin(detector, bin), flux);
         if let Some(stray) = self.layout.stray(detector).filter(|_| ancestry.class() != Class::Signal) {
             self.events(detector, stray, ancestry, flux);

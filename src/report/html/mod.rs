@@ -9,12 +9,14 @@ mod ledger;
 mod number;
 mod overview;
 mod paths;
+mod pst;
 mod reproduce;
 mod section;
 
 use crate::study::compare::Comparison;
 use crate::tally::results::{Results, RunInfo};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+pub use pst::{curve_picture, pst_page, sky_picture};
 
 /// Colours, type and print rules.
 const STYLE: &str = include_str!("style.css");

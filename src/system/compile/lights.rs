@@ -16,11 +16,21 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Every source of the document.
 pub fn sources(shop: &mut Shop, assembly: &Assembly) -> Vec<Source> {
     let document = shop.document;
-    document.system.sources.iter().filter_map(|(name, written)| source(shop, assembly, name, written)).collect()
+    document
+        .system
+        .sources
+        .iter()
+        .filter_map(|(name, written)| source(shop, assembly, (&format!("sources[{name:?}]"), name), written))
+        .collect()
 }
 
-fn source(shop: &mut Shop, assembly: &Assembly, name: &str, written: &written::Source) -> Option<Source> {
-    let path = format!("sources[{name:?}]");
+/// A source under this name, written at this path of the document.
+pub fn source(
+    shop: &mut Shop,
+    assembly: &Assembly,
+    (path, name): (&str, &str),
+    written: &written::Source,
+) -> Option<Source> {
     let at = written.at.map_or(DVec3::ZERO, |at| at.0) - assembly.shift;
     let beam = beam(written, at, assembly.shift);
     let axis = written.axis.map(|a| a.0).or(beam).unwrap_or(DVec3::Z);
@@ -34,8 +44,8 @@ fn source(shop: &mut Shop, assembly: &Assembly, name: &str, written: &written::S
         None if on_node && written.axis.is_none() => None,
         None => Some(frame),
     };
-    let extent = extent(shop, assembly, &path, written, frame, at, beam)?;
-    let flux = flux(shop, &path, written, &extent, &frame, beam)?;
+    let extent = extent(shop, assembly, path, written, frame, at, beam)?;
+    let flux = flux(shop, path, written, &extent, &frame, beam)?;
     let reach = match &extent {
         Extent::Flat { outline, .. } => outline.reach(),
         Extent::Mesh(_) => f64::INFINITY,
@@ -71,6 +81,7 @@ fn pattern(written: &written::Angular) -> Pattern {
         written::Angular::Collimated { .. } => Pattern::Collimated,
         written::Angular::Cone { half_angle } => Pattern::Cone { half_angle: half_angle.0 },
         written::Angular::AngularDiameter(angle) => Pattern::Radiance { half_angle: 0.5 * angle.0 },
+        written::Angular::Ring { inner, outer } => Pattern::Ring { inner: 0.5 * inner.0, outer: 0.5 * outer.0 },
         written::Angular::Lambertian => Pattern::Radiance { half_angle: FRAC_PI_2 },
         written::Angular::Gaussian { half_angle } => Pattern::Gaussian { half_angle: half_angle.0 },
         written::Angular::Isotropic => Pattern::Cone { half_angle: PI },
@@ -189,7 +200,7 @@ fn flux(
     let projected = match (extent, beam) {
         // Weights of a mesh are projected already.
         (Extent::Flat { frame, .. }, Some(beam)) => extent.area() * frame.z.dot(beam).abs(),
-        (Extent::Flat { .. }, None) if matches!(written.angular, written::Angular::AngularDiameter(_)) => extent.area(),
+        (Extent::Flat { .. }, None) if written.angular.is_sky() => extent.area(),
         (Extent::Mesh(_), Some(_)) => extent.area(),
         _ => {
             let problem = Problem::error("irradiance is that of a beam: this pattern has none");

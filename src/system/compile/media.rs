@@ -32,8 +32,8 @@ pub fn media(shop: &mut Shop) -> Vec<Filling> {
 pub fn lines(document: &written::Document) -> Vec<f64> {
     const MOST: usize = 8;
     let mut lines = Vec::new();
-    for (_, source) in document.system.sources.iter() {
-        match &source.spectrum {
+    for spectrum in document.system.spectra() {
+        match spectrum {
             written::Spectrum::Line(wavelength) => lines.push(wavelength.0),
             written::Spectrum::Lines(shares) => lines.extend(shares.iter().map(|(wavelength, _)| wavelength.0)),
             _ => {}
@@ -57,7 +57,7 @@ pub fn band(document: &written::Document) -> Option<[f64; 2]> {
         written::Spectrum::Band { from, to } | written::Spectrum::BlackBody { from, to, .. } => vec![from.0, to.0],
         written::Spectrum::Table { wavelength, .. } => wavelength.iter().map(|wavelength| wavelength.0).collect(),
     };
-    let ends = document.system.sources.iter().flat_map(|(_, source)| ends(&source.spectrum));
+    let ends = document.system.spectra().flat_map(ends);
     ends.map(|end| [end; 2]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 

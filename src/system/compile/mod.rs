@@ -8,13 +8,16 @@ mod coated;
 mod coatings;
 mod configure;
 mod exact;
+mod glare;
 mod lights;
+mod mask;
 mod media;
 mod models;
 mod parts;
 mod receivers;
 mod scatter;
 mod scatterer;
+mod sweep;
 mod targets;
 pub mod understanding;
 pub mod variants;
@@ -26,14 +29,18 @@ use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Guidance, Roulette, Settings, Trace, Until};
+use crate::source::Source;
 use assembly::Assembly;
 pub use coated::{Coated, coated};
 use glam::DVec3;
+pub use glare::Glare;
+pub use mask::Mask;
 pub use parts::{parts_of_file, parts_of_system};
 pub use scatterer::{Scatterer, scatterer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+pub use sweep::Sweep;
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
@@ -48,6 +55,10 @@ pub struct Compiled {
     pub parameters: BTreeMap<String, String>,
     /// What is assumed of the finishes of the built-in library, a line each.
     pub finishes: Vec<String>,
+    /// Which sources are sweeps, and what is asked of them.
+    pub sweeps: Vec<Sweep>,
+    /// Fields with a black patch.
+    pub glare: Vec<Glare>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -145,10 +156,13 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     exact::mason::faces(&mut shop, &mut assembly);
     let watched = receivers::detectors(&mut shop, &assembly);
     let targets = targets::targets(&mut shop, &assembly);
-    let sources = lights::sources(&mut shop, &assembly);
-    coatings::ranges(&mut shop, &coatings, &sources);
-    if !sources.is_empty() {
-        scatter::ranges(&mut shop, &sources);
+    let mut sources = lights::sources(&mut shop, &assembly);
+    let sweeps = sweep::sweeps(&mut shop, &assembly, &watched, &mut sources);
+    let glare = glare::glare(&mut shop, &assembly, &watched);
+    let lit: Vec<Source> = sources.iter().chain(glare.iter().flat_map(|glare| &glare.sources)).cloned().collect();
+    coatings::ranges(&mut shop, &coatings, &lit);
+    if !lit.is_empty() {
+        scatter::ranges(&mut shop, &lit);
     }
     if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
         shop.fault("sources", Problem::error("nothing shines").expecting("at least one source"));
@@ -186,7 +200,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     }
     let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
     let finishes = scatter::assumptions(document);
-    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes }, assembly))
+    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps, glare }, assembly))
 }
 
 fn stem(document: &Document) -> String {

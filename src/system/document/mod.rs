@@ -13,6 +13,7 @@ mod element;
 mod entry;
 mod exact;
 mod geometry;
+mod glare;
 mod include;
 mod manuscript;
 mod medium;
@@ -24,6 +25,7 @@ mod scatter;
 mod source;
 mod stack;
 mod surface;
+mod sweep;
 mod target;
 mod tree;
 mod variant;
@@ -35,6 +37,7 @@ pub use detector::{Bins, Detector, Quantity, Receiver};
 pub use element::{Body, Element, Optical};
 pub use exact::{Exact, Form, Relative};
 pub use geometry::{Geometry, Up};
+pub use glare::Glare;
 pub use medium::Medium;
 pub use names::Names;
 pub use parameter::Choice;
@@ -44,6 +47,7 @@ pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
 pub use stack::{Layer, Thickness};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
+pub use sweep::{Angles, Mask, Sweep, degrees};
 pub use target::Target;
 pub use variant::{Bracket, Level};
 
@@ -88,6 +92,10 @@ pub struct System {
     pub default: Option<Finish>,
     /// Light sources by name.
     pub sources: Names<Source>,
+    /// Sources at many angles by name.
+    pub sweeps: Names<Sweep>,
+    /// Fields with a black patch by name.
+    pub glare: Names<Glare>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
     /// What surfaces may aim at, by name.
@@ -96,6 +104,15 @@ pub struct System {
     pub run: Run,
     /// Factor on scatter of an end of a bracket; 1 otherwise.
     pub level: Level,
+}
+
+impl System {
+    /// The spectra of all light.
+    pub fn spectra(&self) -> impl Iterator<Item = &Spectrum> {
+        let sources = self.sources.iter().map(|(_, source)| &source.spectrum);
+        let sweeps = self.sweeps.iter().map(|(_, sweep)| &sweep.spectrum);
+        sources.chain(sweeps).chain(self.glare.iter().map(|(_, glare)| &glare.spectrum))
+    }
 }
 
 /// A system and the text it was read from.
@@ -318,6 +335,9 @@ impl Document {
         }
         for (name, scatter) in self.system.scatter.iter() {
             tables(scatter, &format!("scatter[{name:?}]"), &mut files);
+        }
+        for (name, sweep) in self.system.sweeps.iter() {
+            files.extend(sweep.mask.iter().map(|mask| (format!("sweeps[{name:?}].mask.file"), mask.file.as_path())));
         }
         let missing = files.into_iter().filter(|(_, file)| !self.resolve(file).is_file());
         missing.map(|(path, file)| self.problem(&path, no_file(file, &self.resolve(file)))).collect()

@@ -104,6 +104,13 @@ pub enum Angular {
     },
     /// A disc of uniform radiance at infinity, with this angular diameter, rad.
     AngularDiameter(Angle),
+    /// Uniform radiance at infinity between two angular diameters: a field around a black patch.
+    Ring {
+        /// Angular diameter of the patch, rad.
+        inner: Angle,
+        /// Angular diameter of the field, rad.
+        outer: Angle,
+    },
     /// Intensity proportional to the cosine.
     Lambertian,
     /// Gaussian in angle.
@@ -113,6 +120,13 @@ pub enum Angular {
     },
     /// The same intensity in every direction.
     Isotropic,
+}
+
+impl Angular {
+    /// True if it is at infinity and not a point: an irradiance is that on the plane of the extent.
+    pub fn is_sky(&self) -> bool {
+        matches!(self, Angular::AngularDiameter(_) | Angular::Ring { .. })
+    }
 }
 
 /// How flux is shared among vacuum wavelengths.

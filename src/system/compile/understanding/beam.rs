@@ -46,7 +46,7 @@ fn covers(scene: &Scene, source: &Source) -> Option<f64> {
     let narrow = match source.angular.pattern {
         Pattern::Collimated => true,
         Pattern::Radiance { half_angle } => half_angle < FRAC_PI_4,
-        Pattern::Cone { .. } | Pattern::Gaussian { .. } => false,
+        Pattern::Cone { .. } | Pattern::Gaussian { .. } | Pattern::Ring { .. } => false,
     };
     let along = source.angular.frame()?.z;
     let slant = along.dot(plane.z);

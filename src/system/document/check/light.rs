@@ -11,7 +11,7 @@ const MOST_BINS: u64 = 1 << 26;
 impl Checker<'_> {
     pub(super) fn sources(&mut self) {
         let document = self.document;
-        let none = self.defined("sources").is_empty();
+        let none = self.defined("sources").is_empty() && self.defined("sweeps").is_empty();
         self.require(!none, "sources", || {
             Problem::error("the system has no light source").expecting("`sources: {..}`")
         });
@@ -26,7 +26,7 @@ impl Checker<'_> {
     }
 
     /// Either a flux or an irradiance, and an area for the latter.
-    fn power(&mut self, source: &Source, path: &str) {
+    pub(super) fn power(&mut self, source: &Source, path: &str) {
         match (source.flux, source.irradiance) {
             (Some(flux), None) => self.positive(flux.0, &format!("{path}.flux")),
             (None, Some(irradiance)) => {
@@ -49,7 +49,7 @@ impl Checker<'_> {
         }
     }
 
-    fn extent(&mut self, source: &Source, path: &str) {
+    pub(super) fn extent(&mut self, source: &Source, path: &str) {
         let at = format!("{path}.extent");
         match &source.extent {
             Extent::Point => {}
@@ -86,10 +86,10 @@ impl Checker<'_> {
             self.not_empty(node, &format!("{at}.nodes[{index}]"), "the name of the node");
         }
         self.range(margin >= 1.0 && margin.is_finite(), &format!("{at}.margin"), "a factor of at least 1");
-        let beam = matches!(source.angular, Angular::Collimated { .. } | Angular::AngularDiameter(_));
+        let beam = matches!(source.angular, Angular::Collimated { .. }) || source.angular.is_sky();
         self.require(beam, &at, || {
             Problem::error("`Cover` lies across a beam, and this source has none")
-                .expecting("`angular: Collimated(..)` or `AngularDiameter(..)`")
+                .expecting("`angular: Collimated(..)`, `AngularDiameter(..)` or `Ring(..)`")
         });
     }
 
@@ -109,7 +109,7 @@ impl Checker<'_> {
         }
     }
 
-    fn not_parallel(&mut self, axis: Direction, x: Direction, path: &str, name: &str) {
+    pub(super) fn not_parallel(&mut self, axis: Direction, x: Direction, path: &str, name: &str) {
         // Below 1e-6 rad what is left of x after making it perpendicular is mostly rounding of the text.
         self.require(axis.0.cross(x.0).length() > 1e-6, path, || {
             Problem::error(format!("`x` is parallel to the {name}")).expecting("another direction")
@@ -122,9 +122,18 @@ impl Checker<'_> {
             Angular::Collimated { .. } => self.collimated(source, &at),
             Angular::Cone { half_angle } => self.angle(half_angle.0, (0.0, 180.0), &format!("{at}.half_angle")),
             Angular::AngularDiameter(diameter) => self.angle(diameter.0, (0.0, 180.0), &at),
+            Angular::Ring { inner, outer } => self.ring([inner.0, outer.0], &at),
             Angular::Gaussian { half_angle } => self.angle(half_angle.0, (0.0, 90.0), &format!("{at}.half_angle")),
             Angular::Lambertian | Angular::Isotropic => {}
         }
+    }
+
+    pub(super) fn ring(&mut self, [inner, outer]: [f64; 2], path: &str) {
+        self.angle(inner, (0.0, 180.0), &format!("{path}.inner"));
+        self.angle(outer, (0.0, 180.0), &format!("{path}.outer"));
+        self.require(inner < outer || outer <= 0.0, path, || {
+            Problem::error("this ring has no solid angle").expecting("`inner` below `outer`")
+        });
     }
 
     fn collimated(&mut self, source: &Source, path: &str) {
@@ -152,7 +161,7 @@ impl Checker<'_> {
         }
     }
 
-    fn spectrum(&mut self, spectrum: &Spectrum, path: &str) {
+    pub(super) fn spectrum(&mut self, spectrum: &Spectrum, path: &str) {
         match spectrum {
             Spectrum::Line(wavelength) => self.wavelength(*wavelength, path),
             Spectrum::Lines(lines) => {

@@ -2,9 +2,11 @@
 
 mod bulk;
 mod coating;
+mod glare;
 mod light;
 mod optics;
 mod scatter;
+mod sweep;
 
 use super::tree::Shape;
 use super::{About, Body, Document, Run, read, variant};
@@ -73,6 +75,8 @@ impl Document {
         checker.scatter();
         checker.surfaces();
         checker.sources();
+        checker.sweeps();
+        checker.glare();
         checker.detectors();
         checker.targets();
         checker.run(&self.system.run);
