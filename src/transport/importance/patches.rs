@@ -73,7 +73,7 @@ impl Patches {
         learner.map.roots = vec![NOWHERE; 2 * WAYS * scene.parts.len()];
         for (side, mut sightings) in sides {
             // Pieces are called by their fronts; their backs face the other way.
-            let front = if side / WAYS % 2 == 0 { side } else { (side - WAYS) ^ 1 };
+            let front = if (side / WAYS).is_multiple_of(2) { side } else { (side - WAYS) ^ 1 };
             let own = pieces.entry(front).or_default();
             let root = learner.divide(&mut sightings, own);
             learner.map.roots[side] = root;
