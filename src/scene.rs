@@ -4,7 +4,7 @@ use crate::aim::Target;
 use crate::detector::Detector;
 use crate::geometry::{Bvh, Hit, Left, Ray};
 use crate::medium::Medium;
-use crate::packet::Solids;
+use crate::packet::{Class, Solids};
 use crate::source::Source;
 use crate::surface::Surface;
 use crate::tally::Layout;
@@ -95,6 +95,11 @@ impl Scene {
     pub fn layout(&self, rows: usize) -> Layout {
         let bins = self.detectors.iter().map(|d| d.grid.shape().iter().product()).collect();
         Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows)
+    }
+
+    /// The class of the light that is meant to arrive: the image, or what comes straight where nothing makes one.
+    pub fn image(&self) -> Class {
+        if self.has_optics { Class::Signal } else { Class::Direct }
     }
 
     /// Medium of the innermost of `solids`.

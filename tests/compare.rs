@@ -73,6 +73,46 @@ fn image(comparison: &Comparison, variant: usize) -> &DetectorChange {
     &comparison.variants[variant].detectors["image"]
 }
 
+/// Two glasses in contact, straight before a detector.
+const CONTACT: &str = r#"System(
+    name: "contact",
+    elements: {
+        "A": (body: Lens(surfaces: [(form: Plane), (form: Plane)], thickness: ["2 mm"], media: ["crown"], diameter: "20 mm")),
+        "B": (body: Lens(surfaces: [(form: Plane), (form: Plane)], thickness: ["2 mm"], media: ["flint"], diameter: "20 mm"), at: "(0, 0, 2) mm"),
+        "image": (body: Aperture(diameter: "0 mm", outer: "20 mm"), at: "(0, 0, 9) mm"),
+    },
+    media: { "crown": Constant(n: 1.5), "flint": Constant(n: 1.6) },
+    coatings: { "half": Ideal(reflectance: 0.5, transmittance: 0.5) },
+    surfaces: [(on: Node("image"), specular: Absorb)],
+    sources: {
+        "lamp": (flux: "1 W", extent: Disk(radius: "5 mm"), at: "(0, 0, -9) mm", angular: Collimated(direction: "(0, 0, 1)"), spectrum: Line("550 nm")),
+    },
+    detectors: { "image": (on: Node("image"), quantity: Irradiance, pixels: (2, 2), side: Front) },
+    run: (rays: 2048, seed: 1),
+    variants: {
+        "back of A": (surfaces: [(on: Tag("A.back"), coating: "half")]),
+        "front of B": (surfaces: [(on: Tag("B.front"), coating: "half")]),
+    },
+)"#;
+
+/// One face acts where two lie on each other: variants that coat the one and the other are not lanes of one trace.
+#[test]
+fn variants_coat_either_of_two_faces_in_contact() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("system.ron");
+    std::fs::write(&path, CONTACT).expect("written");
+    let documents =
+        Document::lineup(&path, &Choice::default()).unwrap_or_else(|error| panic!("{error}\n{:#?}", error.problems()));
+    let together = compared(&documents, 1);
+    for variant in [1, 2] {
+        let (lane, own) = (image(&together, variant).flux.flux_w, alone(&documents[variant], 2));
+        let own = own.variants[0].detectors["image"].flux.flux_w;
+        let apart = (lane.mean - own.mean).abs();
+        assert!(apart <= 4.0 * lane.error.hypot(own.error) + 1e-9 && own.mean < 0.6, "{variant}: {lane:?} {own:?}");
+    }
+    assert!(together.variants.iter().any(|variant| !variant.together), "they cannot all be lanes of one scene");
+}
+
 const FINISHES: &str = r#"
     "better coating": (coatings: { "face": Ideal(reflectance: 0.01, transmittance: 0.99) }),
     "one side bare": (surfaces: [(on: Tag("lens.back"), specular: Fresnel)]),

@@ -92,6 +92,7 @@ fn detector(flux: Estimate, unit: &str, classes: &[(&str, f64, f64)]) -> Detecto
         unit: unit.into(),
         classes: named(classes),
         brightest_batch: 0.004,
+        variance_of_variance: 0.03,
         sources: BTreeMap::new(),
         unresolved: 0.124,
     }

@@ -179,6 +179,19 @@ fn the_star_tracker_shows_its_curve_over_ten_decades() {
     assert!(flux("6 deg").mean > 1e-6 * flux("1 deg").mean, "{:?}", flux("6 deg"));
 }
 
+/// Nine decades from the image to the last angle, and the sky beside the secondary mirror: at 12 degrees the sun shines into the baffle.
+#[test]
+fn the_small_telescope_sees_the_sky_beside_its_secondary_mirror() {
+    let results = hold("small_telescope");
+    let sources = &results["system.ron"].detectors["sensor"].sources;
+    let flux = |angle: &str| sources[format!("sky {angle}").as_str()];
+    let (image, beside, far) = (flux("0 deg"), flux("12 deg"), flux("80 deg"));
+    assert!(far.mean > 0.0 && far.mean + 4.0 * far.error < 1e-8 * image.mean, "{far:?}, image {image:?}");
+    for dark in ["6 deg", "20 deg"].map(flux) {
+        assert!(beside.mean - dark.mean > 0.0, "{beside:?}, {dark:?}");
+    }
+}
+
 #[test]
 fn every_shipped_system_is_held_to_its_numbers() {
     let mut shipped = Vec::new();
@@ -208,6 +221,7 @@ fn every_shipped_system_is_held_to_its_numbers() {
             "integrating_sphere",
             "questar",
             "slab",
+            "small_telescope",
             "star_tracker",
             "triplet"
         ],

@@ -80,9 +80,11 @@ pub fn pst(args: &PstArgs) -> Result<Ending, Error> {
     let start = Instant::now();
     let file = args.output.join(KEPT);
     let text = std::fs::read_to_string(&file).unwrap_or_default();
-    let mut kept = Kept::read(&text, fingerprint(&compiled, &settings));
+    // A variant is in the system's file beside the others: the hash of the file does not tell which it is.
+    let of = format!("{} {:?}", fingerprint(&compiled, &settings), args.chosen.variant);
+    let mut kept = Kept::read(&text, of);
     if kept.sweeps.is_empty() && !text.is_empty() {
-        say("what the folder keeps is of another system, seed or version: it is traced anew\n");
+        say("what the folder keeps is of another system, variant, seed or version: it is traced anew\n");
     }
     let mut curves = Vec::new();
     for sweep in &sweeps {

@@ -87,7 +87,7 @@ fn info(args: &SensitivityArgs, found: &Sensitivity, threads: usize, seconds: f6
             "straylight sensitivity {} -o {} --rays {} --seed {}{until}{}",
             args.system.display(),
             args.output.display(),
-            found.rays,
+            found.rays_requested,
             found.seed,
             args.chosen.command()
         ),

@@ -17,4 +17,8 @@ impl Coating for Bare {
     fn opaque(&self) -> bool {
         false
     }
+
+    fn bare(&self) -> bool {
+        true
+    }
 }

@@ -19,6 +19,16 @@ pub fn mean_and_error(sum: f64, spread: f64, n: u64) -> (f64, f64) {
     (mean, (spread / (count - 1.0) / count).sqrt())
 }
 
+/// Relative variance of the variance of the mean of independent values, sum d^4 / (sum d^2)^2 - 1 / n with d the deviations from their
+/// mean (Pederson, Forster, Booth, Nuclear Science and Engineering 127, 1997); 0 where there is no variance.
+pub fn variance_of_variance(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let power = |exponent: i32| values.clone().map(|value| (value - mean).powi(exponent)).sum::<f64>();
+    let squares = power(2);
+    if squares > 0.0 { (power(4) / (squares * squares) - 1.0 / count).max(0.0) } else { 0.0 }
+}
+
 /// Half-width of the central 95 % interval in units of the standard error for a mean of `n` batches (Student's t, n - 1 degrees).
 pub fn student95(n: u64) -> f64 {
     if n < 2 {
@@ -63,6 +73,17 @@ mod tests {
     fn students_factor_matches_the_tables() {
         assert!((student95(20) - 2.093).abs() < 1e-3);
         assert!((student95(31) - 2.042).abs() < 1e-3);
+    }
+
+    /// A uniform variable has the kurtosis 9/5, a single bright value the most: 1 - 1/n.
+    #[test]
+    fn variance_of_variance_of_known_samples() {
+        let n = 1000;
+        let uniform = (0..n).map(|i| f64::from(i) / f64::from(n));
+        assert!((variance_of_variance(uniform) * f64::from(n) - 0.8).abs() < 1e-3);
+        let one = (0..64).map(|i| (i == 7) as u8 as f64);
+        assert!((variance_of_variance(one) - 0.9535).abs() < 1e-3);
+        assert_eq!(variance_of_variance([2.0; 5].into_iter()), 0.0);
     }
 
     #[test]

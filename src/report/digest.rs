@@ -38,7 +38,10 @@ pub fn merit(detector: &DetectorResult, run: &RunInfo) -> Option<String> {
     known.then(|| {
         let merit = rounded(1.0 / (relative * relative * cpu));
         let brightest = 100.0 * detector.brightest_batch;
-        format!("figure of merit 1 / (relative error² × thread seconds): {merit} /s; brightest batch {brightest:.1} % of the flux")
+        let unsure = rounded(detector.variance_of_variance);
+        format!(
+            "figure of merit 1 / (relative error² × thread seconds): {merit} /s; brightest batch {brightest:.1} % of the flux; variance of the variance {unsure}"
+        )
     })
 }
 

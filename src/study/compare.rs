@@ -31,9 +31,9 @@ pub struct Change {
 pub struct DetectorChange {
     /// All light.
     pub flux: Change,
-    /// All but the class "signal".
+    /// All but what is meant to arrive: the class "signal", or direct light where there are no optics.
     pub stray: Change,
-    /// The class "signal"; null if neither the baseline nor the variant has any.
+    /// What is meant to arrive; null if neither the baseline nor the variant has any.
     pub signal: Option<Change>,
     /// In words.
     pub verdict: String,
@@ -116,7 +116,7 @@ struct Traced {
 /// What one lane of it found.
 struct Lane {
     results: Results,
-    /// Of each detector: everything and the signal, W per batch.
+    /// Of each detector: stray light and the signal, W per batch.
     totals: Vec<[Series; 2]>,
     paths: Vec<Shift>,
     absorbed: Vec<Shift>,
@@ -169,7 +169,7 @@ fn traced(trace: &Trace, settings: &Settings, stop: &AtomicBool, step: &dyn Fn(u
 
 fn lanes<const V: usize>(trace: &Trace, settings: &Settings, stop: &AtomicBool, step: &dyn Fn(u64, u64)) -> Traced {
     let scene = &trace.compiled.scene;
-    let mut record = Record::<V>::new(scene.detectors.len(), trace.reference());
+    let mut record = Record::<V>::new(scene, trace.reference());
     let progress = |p: &crate::transport::Progress<V>| step(p.batches, p.of);
     let counts = batchwise::<V>(scene, settings, stop, &progress, &mut |layout, rows, batch| {
         record.take(layout, rows.rows.len(), layout.absorbers(), batch);
@@ -177,7 +177,7 @@ fn lanes<const V: usize>(trace: &Trace, settings: &Settings, stop: &AtomicBool, 
     let lane = |lane: usize| Lane {
         results: Results {
             finishes: trace.compiled.finishes.clone(),
-            parameters: trace.compiled.parameters.clone(),
+            parameters: trace.parameters[lane].clone(),
             ..summary::results(scene, settings, &counts, lane, trace.compiled.inputs.clone(), Vec::new())
         },
         totals: (0..scene.detectors.len()).map(|d| record.totals(d, lane).clone()).collect(),
@@ -252,7 +252,7 @@ fn told(
     let (batches, batch_rays) = (done[0].2.batches, done[0].2.batch_rays);
     let baseline = &done[0].2.lanes[done[0].1.reference()];
     let (base, results) = (baseline.totals.clone(), baseline.results.clone());
-    let first = done[0].1.compiled.parameters.clone();
+    let first = results.parameters.clone();
     let (mut variants, mut inputs, mut segments) = (Vec::new(), BTreeMap::new(), 0);
     for (number, trace, traced) in done {
         segments += traced.segments;
@@ -264,11 +264,11 @@ fn told(
             if variant == 0 && number > 0 {
                 continue;
             }
-            let apart = trace.compiled.parameters.iter().filter(|(name, value)| first.get(*name) != Some(*value));
-            let Lane { results, totals, surfaces, mut paths, mut absorbed } = lane;
+            let Lane { results, totals, mut paths, mut absorbed, mut surfaces } = lane;
             if !shares {
-                (paths, absorbed) = (Vec::new(), Vec::new());
+                (paths, absorbed, surfaces) = (Vec::new(), Vec::new(), Vec::new());
             }
+            let apart = results.parameters.iter().filter(|(name, value)| first.get(*name) != Some(*value));
             let name = names.get(variant).cloned().unwrap_or_default();
             let doubts = results.warnings.iter().map(|warning| format!("{name}: {warning}"));
             warnings.extend(doubts);
@@ -306,13 +306,13 @@ fn detectors(
     own: &[[Series; 2]],
     batches: u64,
 ) -> BTreeMap<String, DetectorChange> {
-    let stray = |[all, signal]: &[Series; 2]| -> Series { all.iter().zip(signal).map(|(a, s)| a - s).collect() };
+    let all = |[stray, signal]: &[Series; 2]| -> Series { stray.iter().zip(signal).map(|(a, b)| a + b).collect() };
     let change = |(map, (base, own)): (&crate::tally::results::MapResult, (&[Series; 2], &[Series; 2]))| {
         let lit = base[1].iter().chain(&own[1]).any(|signal| *signal > 0.0);
-        let stray = against(&stray(base), &stray(own));
+        let stray = against(&base[0], &own[0]);
         let signal = lit.then(|| against(&base[1], &own[1]));
         let verdict = verdict(&stray, signal.as_ref(), batches);
-        (map.detector.clone(), DetectorChange { flux: against(&base[0], &own[0]), stray, signal, verdict })
+        (map.detector.clone(), DetectorChange { flux: against(&all(base), &all(own)), stray, signal, verdict })
     };
     // Maps are in the order of the scene's detectors.
     results.maps.iter().zip(base.iter().zip(own)).map(change).collect()

@@ -9,7 +9,6 @@
 //! Source: ISO 9358:1994, veiling glare index by the extended-source (black patch) method.
 
 use crate::math::rng::mix;
-use crate::packet::Class;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::system::compile::Glare;
@@ -48,7 +47,7 @@ pub fn index(scene: &mut Scene, glare: &Glare, settings: &Settings, stop: &Atomi
     let seen = [&field, &patch].map(|results| &results.detectors[&detector.label]);
     let [f, p] = seen.map(|seen| scaled(seen.flux_w, area));
     let all = f.mean + p.mean;
-    let image = Class::from_index(usize::from(!scene.has_optics)).label(scene.has_optics);
+    let image = scene.image().label(scene.has_optics);
     let image = seen[0].classes.get(&image).map_or(0.0, |flux| flux.mean / seen[0].flux_w.mean);
     let warnings: Vec<String> = [&field, &patch].into_iter().flat_map(|results| results.warnings.clone()).collect();
     Some(Index {

@@ -11,6 +11,7 @@
 
 use crate::math::statistics::mean_and_error;
 use crate::packet::Class;
+use crate::scene::Scene;
 use crate::tally::results::Estimate;
 use crate::tally::{Layout, Sums};
 
@@ -55,7 +56,7 @@ struct Moments {
 /// The books of one trace.
 #[derive(Debug)]
 pub struct Record<const V: usize> {
-    /// For each detector and lane, per batch, W: everything, and the signal.
+    /// For each detector and lane, per batch, W: stray light, and what is meant to arrive.
     totals: Vec<[[Series; 2]; V]>,
     /// Slots that are compared between lanes.
     slots: Vec<usize>,
@@ -63,14 +64,16 @@ pub struct Record<const V: usize> {
     batches: u64,
     /// Lane that the others are compared with.
     reference: usize,
+    /// Class of what is meant to arrive.
+    image: Class,
 }
 
 impl<const V: usize> Record<V> {
-    /// Books for so many detectors; lanes are compared with the lane `reference`.
-    pub fn new(detectors: usize, reference: usize) -> Record<V> {
+    /// Books for the detectors of a scene; lanes are compared with the lane `reference`.
+    pub fn new(scene: &Scene, reference: usize) -> Record<V> {
         let empty = || std::array::from_fn(|_| [Series::new(), Series::new()]);
-        let totals = (0..detectors).map(|_| empty()).collect();
-        Record { totals, slots: Vec::new(), moments: Vec::new(), batches: 0, reference }
+        let totals = scene.detectors.iter().map(|_| empty()).collect();
+        Record { totals, slots: Vec::new(), moments: Vec::new(), batches: 0, reference, image: scene.image() }
     }
 
     /// Takes a batch down.
@@ -80,10 +83,12 @@ impl<const V: usize> Record<V> {
             self.moments = vec![[Moments::default(); V]; self.slots.len()];
         }
         for (detector, lanes) in self.totals.iter_mut().enumerate() {
-            let [all, signal] = [layout.detector(detector), layout.class(detector, Class::Signal.index())]
-                .map(|slot| batch.values(slot));
+            // The sum of its classes: all light less the image would be rounding where stray light is faint.
+            let stray = (0..Class::COUNT).filter(|class| *class != self.image.index());
+            let stray: Vec<[f64; V]> = stray.map(|class| batch.values(layout.class(detector, class))).collect();
+            let signal = batch.values(layout.class(detector, self.image.index()));
             for (lane, series) in lanes.iter_mut().enumerate() {
-                series[0].push(all[lane]);
+                series[0].push(stray.iter().map(|values| values[lane]).sum());
                 series[1].push(signal[lane]);
             }
         }
@@ -98,7 +103,7 @@ impl<const V: usize> Record<V> {
         self.batches += 1;
     }
 
-    /// Everything on a detector in a lane, and the signal, W per batch.
+    /// Stray light on a detector in a lane, and what is meant to arrive, W per batch.
     pub fn totals(&self, detector: usize, lane: usize) -> &[Series; 2] {
         &self.totals[detector][lane]
     }

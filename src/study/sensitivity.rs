@@ -59,7 +59,7 @@ pub struct Lever {
 /// What moves the stray light on one detector.
 #[derive(Clone, Debug, Serialize)]
 pub struct DetectorLevers {
-    /// All light but the class "signal", W.
+    /// All light but what is meant to arrive (the class "signal", or direct light where there are no optics), W.
     pub stray_w: Estimate,
     /// Share of it on paths too long to be counted to their end, 0..1.
     pub uncounted: f64,
@@ -74,6 +74,7 @@ pub struct DetectorLevers {
 pub struct Sensitivity {
     pub system: String,
     pub rays: u64,
+    pub rays_requested: u64,
     pub seed: u64,
     pub batches: u64,
     pub detectors: BTreeMap<String, DetectorLevers>,
@@ -126,7 +127,8 @@ pub fn sensitivity(
     stop: &AtomicBool,
     progress: &dyn Fn(&Progress<1>),
 ) -> Option<Sensitivity> {
-    let settings = Settings { booking: Booking::Events, ..settings.clone() };
+    // No path has a row: nothing is said of paths.
+    let settings = Settings { booking: Booking::Events, paths: 0, ..settings.clone() };
     let mut counts = counts(scene);
     let run = batchwise::<1>(scene, &settings, stop, progress, &mut |layout, _, batch| {
         counts.iter_mut().for_each(|count| count.take(layout, batch));
@@ -143,6 +145,7 @@ pub fn sensitivity(
     (batches >= 2).then(|| Sensitivity {
         system: scene.name.clone(),
         rays: batches * run.batch_rays,
+        rays_requested: settings.rays,
         seed: settings.seed,
         batches,
         detectors: scene.detectors.iter().enumerate().filter_map(|(d, detector)| levers(d, detector)).collect(),

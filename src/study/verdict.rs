@@ -37,7 +37,7 @@ pub fn verdict(stray: &Change, signal: Option<&Change>, batches: u64) -> String 
     match image {
         None => format!("{strength}: {amount}"),
         Some((lost, words)) if ratio.mean < 1.0 && lost >= BLOCKING * (1.0 - ratio.mean) => {
-            format!("a gain by blocking: {amount}, {words}")
+            format!("a gain by blocking: {amount}, {words} too")
         }
         Some((_, words)) => format!("{strength}: {amount}; {words}"),
     }
@@ -48,7 +48,7 @@ fn told(signal: &Change, batches: u64) -> Option<(f64, String)> {
     let ratio = signal.ratio.filter(|_| certain(signal, batches))?;
     let percent = number(100.0 * (1.0 - ratio.mean).abs(), 100.0 * ratio.error);
     Some(match ratio.mean {
-        r if r < 1.0 => (1.0 - r, format!("the image lost {percent} % too")),
+        r if r < 1.0 => (1.0 - r, format!("the image lost {percent} %")),
         r => (1.0 - r, format!("the image gained {percent} %")),
     })
 }

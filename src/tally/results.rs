@@ -58,6 +58,9 @@ pub struct DetectorResult {
     pub unit: String,
     /// Share of the flux that the brightest batch brought: where it is large, the error is a guess.
     pub brightest_batch: f64,
+    /// Relative variance of the variance of the mean, from the batches: about 2 / batches where they are normal, and more
+    /// the fewer paths bring most of the flux.
+    pub variance_of_variance: f64,
     /// Flux by class, W: "signal", "direct leak", "ghost 1", "scatter 1", ... All rows add up to `flux_w`.
     pub classes: BTreeMap<String, Estimate>,
     /// Flux by source, W.

@@ -3,7 +3,7 @@
 use super::backward::Backward;
 use super::paths::{Candidates, Rows};
 use crate::detector::Arrival;
-use crate::packet::{Ancestry, Class};
+use crate::packet::Ancestry;
 use crate::scene::Scene;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
 use crate::tally::{Layout, Live, Sums};
@@ -99,7 +99,7 @@ impl<'a, const V: usize> Book<'a, V> {
         self.live.add(self.layout.source(detector, source), flux);
         self.live.add(self.layout.source_class(detector, source, class), flux);
         self.live.add(self.layout.bin(detector, bin), flux);
-        if let Some(stray) = self.layout.stray(detector).filter(|_| ancestry.class() != Class::Signal) {
+        if let Some(stray) = self.layout.stray(detector).filter(|_| ancestry.class() != scene.image()) {
             self.events(detector, stray, ancestry, flux);
         }
         match rows.find(detector, ancestry.key) {

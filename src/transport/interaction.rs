@@ -224,10 +224,12 @@ fn branch<const V: usize, W: Watch>(
 }
 
 /// Factor on each way's flux: 0 where it is not followed, 1 where it is followed beside others, 1 / probability where it
-/// was drawn in proportion to its flux. Specular ways are followed apart while the path has fewer than `splits` reflections
+/// was drawn in proportion to its part of the light. Specular ways are followed apart while the path has fewer than `splits` reflections
 /// at interfaces, scatter while it has fewer than `scatter_splits` scatters.
 fn choose<const V: usize, W: Watch>(walk: &Walk<V, W>, packet: &mut Packet<V>, bill: &Bill<V>) -> [f64; 3] {
-    let most = |flux: [f64; V]| flux.iter().fold(0.0, |most: f64, f| most.max(*f));
+    // The largest part that any lane has of its own light, so that no lane's way is drawn too rarely because another is brighter.
+    let part = |flux: f64, lane: usize| if flux > 0.0 { flux / packet.light[lane].i } else { 0.0 };
+    let most = |flux: [f64; V]| (0..V).map(|lane| part(flux[lane], lane)).fold(0.0, f64::max);
     let flux = [most(bill.reflected.map(|s| s.i)), most(bill.transmitted.map(|s| s.i)), most(bill.scattered)];
     let mut factors = flux.map(|f| (f > 0.0) as u8 as f64);
     if factors.iter().sum::<f64>() < 2.0 {

@@ -38,6 +38,8 @@ pub struct Counts<const V: usize> {
     pub layout: Layout,
     pub rows: Rows,
     pub sums: Sums<V>,
+    /// Flux on every detector in every batch, W.
+    pub fluxes: Vec<Vec<[f64; V]>>,
     pub batch_rays: u64,
     /// Flights from event to event, pilot not included.
     pub segments: u64,
@@ -76,7 +78,8 @@ pub fn batchwise<const V: usize>(
     progress: &dyn Fn(&Progress<V>),
     batch: &mut dyn FnMut(&Layout, &Rows, &Sums<V>),
 ) -> Counts<V> {
-    let batch_rays = settings.batch_rays();
+    // Every source has a ray in every batch.
+    let batch_rays = settings.batch_rays().max((scene.sources.len() as u64).next_power_of_two());
     let quotas = quotas(scene, batch_rays);
     let declared = Importance::declared(scene);
     let plain = Plan { scene, settings, importance: &declared, backward: None, quotas: &quotas, batch_rays };
@@ -102,6 +105,7 @@ pub fn batchwise<const V: usize>(
     };
     let pool = Mutex::new(Vec::new());
     let mut fold = Fold::default();
+    let mut fluxes = vec![Vec::new(); scene.detectors.len()];
     let (mut done, mut segments) = (0, 0);
     let stages = stages(settings);
     'stages: for &stage in &stages {
@@ -116,6 +120,7 @@ pub fn batchwise<const V: usize>(
             for finished in chunk {
                 let Some((sums, flights)) = finished else { break 'stages };
                 batch(&layout, &rows, &sums);
+                fluxes.iter_mut().enumerate().for_each(|(d, all)| all.push(sums.values(layout.detector(d))));
                 fold.push(sums);
                 segments += flights;
                 done += 1;
@@ -133,7 +138,7 @@ pub fn batchwise<const V: usize>(
         }
     }
     let interrupted = stop.load(Ordering::Relaxed) && done < settings.batches();
-    Counts { layout, rows, sums: fold.total(), batch_rays, segments, interrupted, guidance }
+    Counts { layout, rows, sums: fold.total(), fluxes, batch_rays, segments, interrupted, guidance }
 }
 
 /// Runs of fewer source rays learn nothing: it would take longer than they do.

@@ -11,6 +11,7 @@ use crate::math::Rng;
 use crate::math::rng::mix;
 use crate::optics::{Stokes, refraction};
 use crate::packet::{Event, Packet};
+use crate::surface::Surface;
 use crate::tally::layout::Cut;
 
 /// Lobes that are nowhere denser than this (1/sr) in the specular direction are broad; a Lambertian one has 0.32.
@@ -111,18 +112,18 @@ fn one<const V: usize, W: Watch>(
 ) -> bool {
     let (at, surfaces, shares) = (&meeting.at, &meeting.surfaces, &meeting.shares);
     // The direction comes from the mixture of all lanes; each lane weighs its own value against the mixture's density.
-    let total: f64 = bill.scattered.iter().sum();
+    let mixture = mixture(bill, surfaces);
     let turn = (f64::from(branch) + plan.turn) / f64::from(plan.branches);
     let aimed = turn >= plan.advice.lobes;
     let drawn = if aimed {
         plan.advice.aim(turn, &mut packet.rng).map(|world| meeting.frame.to_local(world))
     } else {
-        let lane = lane(bill, total, &mut packet.rng);
+        let lane = lane(&mixture, &mut packet.rng);
         surfaces[lane].draw(&at[lane], &shares[lane], &mut packet.rng)
     };
     let Some(wo) = drawn else { return false };
     let weighed: [Weighed; V] = each(surfaces, |l| surfaces[l].weigh(&at[l], &shares[l], wo));
-    let lobes: f64 = (0..V).map(|l| bill.scattered[l] / total * weighed[l].density).sum();
+    let lobes: f64 = (0..V).map(|l| mixture[l] * weighed[l].density).sum();
     let density = if plan.advice.is_plain() { lobes } else { plan.advice.density(meeting.frame.to_world(wo), lobes) };
     let values = match &walk.trail {
         None => weighed.map(|weighed| weighed.value),
@@ -162,12 +163,23 @@ fn survives<const V: usize, W: Watch>(
     alive
 }
 
-/// A lane in proportion to what it scatters.
-fn lane<const V: usize>(bill: &Bill<V>, total: f64, rng: &mut Rng) -> usize {
-    let mut rest = if V == 1 { 0.0 } else { rng.uniform() * total };
+/// Shares of the lanes in the lobes that are drawn from: every surface that scatters has as much as any other, however little light it
+/// scatters, so that no lane is drawn from another's lobes alone.
+fn mixture<const V: usize>(bill: &Bill<V>, surfaces: &[&Surface; V]) -> [f64; V] {
+    let scatters = |lane: &usize| bill.scattered[*lane] > 0.0;
+    let twins = |lane: usize| (0..V).filter(scatters).filter(|&l| std::ptr::eq(surfaces[l], surfaces[lane])).count();
+    let shares: [f64; V] = std::array::from_fn(|lane| if scatters(&lane) { 1.0 / twins(lane) as f64 } else { 0.0 });
+    let total: f64 = shares.iter().sum();
+    shares.map(|share| share / total)
+}
+
+/// A lane by its share.
+fn lane<const V: usize>(shares: &[f64; V], rng: &mut Rng) -> usize {
+    let mut rest = if V == 1 { 0.0 } else { rng.uniform() };
     let lane = (0..V).find(|&lane| {
-        rest -= bill.scattered[lane];
+        rest -= shares[lane];
         rest < 0.0
     });
-    lane.unwrap_or(V - 1)
+    // Rounding may leave a rest of zero: the last that scatters then.
+    lane.or((0..V).rev().find(|&lane| shares[lane] > 0.0)).unwrap_or(V - 1)
 }

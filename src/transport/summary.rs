@@ -4,7 +4,7 @@ use super::Counts;
 use super::book::coarse_cell;
 use super::paths::Row;
 use crate::detector::Detector;
-use crate::math::statistics::student95;
+use crate::math::statistics::{student95, variance_of_variance};
 use crate::packet::{Class, Event, Step};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -119,12 +119,12 @@ impl<const V: usize> Teller<'_, V> {
     fn doubts(&self, ledger: &LedgerResult) -> Vec<String> {
         let mut doubts = Vec::new();
         let (emitted, residual) = (ledger.emitted.mean, ledger.residual);
-        if ledger.lost.mean > MOST_LOST * emitted {
+        if ledger.lost.mean > MOST_LOST * emitted || ledger.lost.mean.is_nan() {
             let share = 100.0 * ledger.lost.mean / emitted;
             doubts.push(format!("{share:.2e} % of the emitted flux was lost to geometry faults"));
         }
         // Five sigma: one run in two million by chance; 1e-12 is the rounding of a sum of many small terms.
-        if residual.mean.abs() > 5.0 * residual.error + 1e-12 * emitted {
+        if residual.mean.abs() > 5.0 * residual.error + 1e-12 * emitted || residual.mean.is_nan() {
             doubts
                 .push(format!("the ledger does not close: residual {:.3e} ± {:.1e} W", residual.mean, residual.error));
         }
@@ -183,6 +183,7 @@ impl<const V: usize> Teller<'_, V> {
             peak_w_m2: self.peak(d),
             unit: self.scene.detectors[d].grid.unit().into(),
             brightest_batch: self.sums().brightest(slot, self.lane),
+            variance_of_variance: variance_of_variance(self.counts.fluxes[d].iter().map(|flux| flux[self.lane])),
             classes,
             sources,
             unresolved,
@@ -254,8 +255,8 @@ impl<const V: usize> Teller<'_, V> {
         let mut paths: Vec<PathResult> = rows.filter_map(|(index, _)| self.path(index, total, &areas)).collect();
         paths.sort_by(|a, b| b.flux_w.mean.total_cmp(&a.flux_w.mean).then(a.sequence.cmp(&b.sequence)));
         let slot = self.counts.layout.other(d);
-        if self.sums().rays(slot) > 0 {
-            let flux_w = self.estimate(slot);
+        let flux_w = self.estimate(slot);
+        if flux_w.mean != 0.0 {
             paths.push(PathResult {
                 detector: self.scene.detectors[d].label.clone(),
                 source: String::new(),
@@ -277,11 +278,12 @@ impl<const V: usize> Teller<'_, V> {
     fn path(&self, index: usize, total: f64, areas: &[f64]) -> Option<PathResult> {
         let layout = &self.counts.layout;
         let row = &self.counts.rows.rows[index];
-        let rays = self.sums().rays(layout.row(index));
-        if rays == 0 {
+        let flux_w = self.estimate(layout.row(index));
+        // Other variants may have light on a path that this one has not.
+        if flux_w.mean == 0.0 {
             return None;
         }
-        let flux_w = self.estimate(layout.row(index));
+        let rays = self.sums().rays(layout.row(index));
         let cells = layout.row_cells(index).zip(areas).filter(|(_, area)| **area > 0.0);
         let peak = cells.map(|(slot, area)| self.estimate(slot).mean / area).fold(0.0, f64::max);
         let source = self.scene.sources[row.source].label.clone();

@@ -179,13 +179,14 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
     /// Russian roulette: the mean is unchanged, the ledger books the difference.
     fn survives(&mut self, packet: &mut Packet<V>) -> bool {
         let roulette = self.settings.roulette;
+        // The largest flux of all lanes takes no notice of what is not a number.
+        if packet.light.iter().any(|light| light.i.is_nan()) {
+            self.book.lost(Loss::Number, packet.fluxes());
+            return false;
+        }
         let flux = packet.flux();
         if flux >= roulette.below * self.start && flux > 0.0 {
             return true;
-        }
-        if flux.is_nan() {
-            self.book.lost(Loss::Number, packet.fluxes());
-            return false;
         }
         let alive = flux > 0.0 && packet.rng.uniform() < roulette.survive;
         let factor = if alive { 1.0 - 1.0 / roulette.survive } else { 1.0 };

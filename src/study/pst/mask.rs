@@ -5,7 +5,8 @@
 //!     PASS   m + t e <= L        FAIL   m - t e > L        NOT RESOLVED   neither
 //!
 //! t being the quantile of Student's t for 95 % on one side: a PASS is wrong in one of twenty at most. Where nothing arrived, the
-//! upper limit must be below L. A value from fewer than 30 source rays is not resolved: its error is itself a guess.
+//! upper limit must be below L. A value from fewer than 30 source rays, or of which one batch brought more than a quarter, is not resolved:
+//! its error is itself a guess.
 //! What no source ray has found yet is in no error bar: a PASS is as good as the search was.
 
 use super::Point;
@@ -47,7 +48,7 @@ pub struct Required {
 }
 
 impl Required {
-    /// Of a value from so many contributing source rays, or of its `upper` limit if there are none.
+    /// Of a value from so many source rays that brought stray light, or of its `upper` limit if there are none.
     pub fn of(limit: f64, stray: Estimate, contributing: u64, upper: f64) -> Required {
         let reach = ONE_SIDED * stray.error;
         // No stray light, though light came: its upper limit stands for it.

@@ -161,11 +161,12 @@ fn point(scene: &Scene, sweep: &Sweep, rounds: &[Round], direction: usize, scale
     }
     let pst = scaled(seen.flux_w);
     // What is meant to arrive: the image, or where nothing makes one, the light that comes straight.
-    let signal = groups[usize::from(!scene.has_optics)];
+    let image = group(scene.image());
+    let signal = groups[image];
     let stray = if signal.mean == 0.0 {
         pst
     } else {
-        let rest = groups.iter().enumerate().filter(|(group, _)| *group != usize::from(!scene.has_optics));
+        let rest = groups.iter().enumerate().filter(|(group, _)| *group != image);
         rest.fold(Estimate::default(), |sum, (_, part)| Estimate {
             mean: sum.mean + part.mean,
             error: sum.error + part.error,
@@ -187,7 +188,7 @@ fn point(scene: &Scene, sweep: &Sweep, rounds: &[Round], direction: usize, scale
         brightest_batch: seen.brightest,
         classes: classes.into_iter().map(|(class, part)| (label(scene, class), part)).collect(),
         groups,
-        required: limit.map(|limit| Required::of(limit, stray, seen.contributing, upper)),
+        required: limit.map(|limit| Required::of(limit, stray, seen.resolved(BRIGHTEST), upper)),
     }
 }
 
@@ -215,7 +216,8 @@ fn refer_to_axis(points: &mut [Point]) {
         let independent = point.angle_deg > 0.0;
         let error = (point.pst.error / axis.mean).hypot(ratio * axis.error / axis.mean);
         let itself = Estimate { mean: 1.0, error: 0.0 };
-        point.psrr = Some(if independent { Estimate { mean: ratio, error } } else { itself });
+        let known = point.pst.mean > 0.0;
+        point.psrr = known.then_some(if independent { Estimate { mean: ratio, error } } else { itself });
     }
 }
 

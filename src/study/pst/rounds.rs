@@ -55,6 +55,8 @@ pub struct Seen {
     /// Source rays, and those that contributed.
     pub rays: u64,
     pub contributing: u64,
+    /// Those of stray light, at most.
+    pub stray: u64,
     /// On the whole detector, W.
     pub flux_w: Estimate,
     /// Share that the brightest batch brought.
@@ -130,10 +132,13 @@ fn seen(scene: &Scene, detector: usize, settings: &Settings, counts: &Counts<1>,
     let seen = open.iter().enumerate().map(|(source, &direction)| {
         let slot = layout.source(detector, source);
         let class = |class: usize| (class, sums.estimate(layout.source_class(detector, source, class), 0));
+        let stray = (0..Class::COUNT).filter(|class| *class != scene.image().index());
+        let stray: u64 = stray.map(|class| sums.rays(layout.source_class(detector, source, class))).sum();
         Seen {
             direction,
             rays: quotas[source].count * sums.batches,
             contributing: sums.rays(slot),
+            stray: stray.min(sums.rays(slot)),
             flux_w: sums.estimate(slot, 0),
             brightest: sums.brightest(slot, 0),
             classes: (0..Class::COUNT).map(class).filter(|(_, flux)| flux.mean > 0.0).collect(),
@@ -146,6 +151,11 @@ fn seen(scene: &Scene, detector: usize, settings: &Settings, counts: &Counts<1>,
 }
 
 impl Seen {
+    /// Source rays that a verdict on stray light can rest on: those that brought any, but one if a single batch had more of it than `most`.
+    pub fn resolved(&self, most: f64) -> u64 {
+        if self.brightest > most { self.stray.min(1) } else { self.stray }
+    }
+
     /// One direction over all rounds, weighted by their rays.
     pub fn of_all(rounds: &[Round], direction: usize) -> Seen {
         let parts = rounds.iter().flat_map(|round| round.seen.iter().find(|seen| seen.direction == direction));
@@ -170,6 +180,7 @@ impl Seen {
             direction,
             rays,
             contributing: parts.iter().map(|seen| seen.contributing).sum(),
+            stray: parts.iter().map(|seen| seen.stray).sum(),
             flux_w,
             brightest: parts.iter().map(brightest).filter(|share| share.is_finite()).fold(0.0, f64::max),
             classes: (0..Class::COUNT).map(class).filter(|(_, flux)| flux.mean > 0.0).collect(),
@@ -188,6 +199,7 @@ mod tests {
                 direction: 3,
                 rays,
                 contributing: rays,
+                stray: rays,
                 flux_w: Estimate { mean, error },
                 brightest: 0.5,
                 classes: vec![(2, Estimate { mean, error })],

@@ -2,13 +2,15 @@
 
 use super::assembly::Assembly;
 use super::models::Finish;
+use super::understanding::contacts;
 use super::{Compiled, build};
 use crate::error::{Error, Problem};
+use crate::geometry::Hit;
 use crate::optics::Incidence;
 use crate::scene::{Part, PartKind, Scene};
 use crate::system::document::Document;
 use glam::DVec2;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_4;
 
 /// Most variants of one trace.
@@ -22,10 +24,12 @@ pub struct Trace {
     /// Which variant each lane is; 0 is the baseline. The first lane is that which scatters most: what a run learns of importance, it
     /// learns of the first lane, and light that counts in one lane must not be dropped because it does not in another.
     pub variants: Vec<usize>,
+    /// Values of the parameters in each lane: what only finishes depend on may differ.
+    pub parameters: Vec<BTreeMap<String, String>>,
 }
 
 impl Trace {
-    fn new(mut compiled: Compiled, mut variants: Vec<usize>) -> Trace {
+    fn new(mut compiled: Compiled, mut variants: Vec<usize>, mut parameters: Vec<BTreeMap<String, String>>) -> Trace {
         let scene = &mut compiled.scene;
         let brightness: Vec<f64> = (0..variants.len()).map(|lane| scattered(scene, lane)).collect();
         // Of lanes that are alike the first, which is the baseline where it is there.
@@ -36,7 +40,8 @@ impl Trace {
             .filter(|part| brightest < part.surface.len())
             .for_each(|part| part.surface.swap(0, brightest));
         variants.swap(0, brightest);
-        Trace { compiled, variants }
+        parameters.swap(0, brightest);
+        Trace { compiled, variants, parameters }
     }
 
     /// The lane that the others are compared with: the baseline, or the first of variants that are traced without it.
@@ -88,7 +93,7 @@ pub fn lineup(documents: &[Document]) -> Result<Lineup, Error> {
         };
         note(&mut warnings, std::mem::take(&mut compiled.warnings));
         let entrant = Entrant { number, document, compiled, assembly };
-        match groups.iter_mut().find(|group| alike(&group[0], &entrant)) {
+        match groups.iter_mut().find(|group| alike(&group[0], &entrant) && !clash(group, &entrant)) {
             Some(group) => group.push(entrant),
             None => groups.push(vec![entrant]),
         }
@@ -118,18 +123,21 @@ fn together(group: Vec<Entrant>) -> Result<Vec<Trace>, Error> {
     let mut entrants = group.into_iter();
     let Some(mut first) = entrants.next() else { return Ok(Vec::new()) };
     let mut traces = Vec::new();
-    let mut variants = vec![first.number];
+    let own = first.compiled.parameters.clone();
+    let (mut variants, mut parameters) = (vec![first.number], vec![own.clone()]);
     for entrant in entrants {
         if variants.len() == LANES {
             let (compiled, assembly) = build(first.document)?;
             let full = std::mem::replace(&mut first.compiled, compiled);
             first.assembly = assembly;
-            traces.push(Trace::new(full, std::mem::replace(&mut variants, vec![first.number])));
+            let numbers = std::mem::replace(&mut variants, vec![first.number]);
+            traces.push(Trace::new(full, numbers, std::mem::replace(&mut parameters, vec![own.clone()])));
         }
         variants.push(entrant.number);
+        parameters.push(entrant.compiled.parameters.clone());
         add(&mut first, entrant);
     }
-    traces.push(Trace::new(first.compiled, variants));
+    traces.push(Trace::new(first.compiled, variants, parameters));
     Ok(traces)
 }
 
@@ -181,6 +189,24 @@ fn alike(a: &Entrant, b: &Entrant) -> bool {
         && left.run == right.run
         && left.surfaces.iter().map(|s| &s.exact).eq(right.surfaces.iter().map(|s| &s.exact));
     written && fitting(&a.compiled.scene, &b.compiled.scene) && filled_alike(a, b)
+}
+
+/// Where faces lie on each other one of them acts, in all lanes alike: true if another would act where one of these is alone.
+fn clash(group: &[Entrant], other: &Entrant) -> bool {
+    let entrants = || group.iter().chain([other]);
+    // As `Scene::cross` ranks them, seen from both sides.
+    let rank = |entrant: &Entrant, hit: Hit| {
+        let surface = entrant.compiled.scene.surface(hit, 0);
+        (!surface.opaque(), surface.is_plain())
+    };
+    let clashes = |hits: [Hit; 2]| {
+        let ranks: Vec<[(bool, bool); 2]> = entrants().map(|entrant| hits.map(|hit| rank(entrant, hit))).collect();
+        let together = [0, 1].map(|face| (ranks[0][face].0, ranks.iter().all(|ranks| ranks[face].1)));
+        let acts = |[a, b]: [(bool, bool); 2]| a.cmp(&b);
+        ranks.iter().any(|&own| acts(own) != acts(together) && !(own[0].1 && own[1].1))
+    };
+    let turned = |hit: Hit| Hit { front: !hit.front, ..hit };
+    contacts(&group[0].compiled.scene).into_values().any(|hits| clashes(hits) || clashes(hits.map(turned)))
 }
 
 /// The same parts and solids, and light passes the same of them.

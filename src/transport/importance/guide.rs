@@ -16,9 +16,9 @@ pub struct Guide {
 }
 
 impl Guide {
-    /// From directions, and places (m) with weights that they lead to.
-    pub fn learn(directions: Directions, places: Vec<(DVec3, f64)>) -> Guide {
-        Guide { directions, stones: Stones::learn(places) }
+    /// From directions, and places (m) with weights that they lead to, known to `least` (m).
+    pub fn learn(directions: Directions, places: Vec<(DVec3, f64)>, least: f64) -> Guide {
+        Guide { directions, stones: Stones::learn(places, least) }
     }
 
     /// A unit direction from a point of the patch; `None` if there is none.

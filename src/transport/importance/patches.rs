@@ -23,6 +23,8 @@ const CROWD: usize = 256;
 pub const MOST_TARGETS: usize = 4;
 /// Share of the light through a lens that is drawn over the whole of it; the rest as learned.
 const APERTURE: f64 = 0.3;
+/// Size of what places are told apart by, in radii of the scene: above all roundings.
+const SHARP: f64 = 1e-9;
 /// Pieces of area into which all parts together are cut to measure patches.
 const PIECES: f64 = 65_536.0;
 
@@ -187,7 +189,9 @@ impl Learner<'_> {
         Patch {
             worth: whole / (PI * area.max(least)),
             targets,
-            rest: directions.map(|directions| (others.max(0.0), Guide::learn(directions, places()))),
+            rest: directions.map(|directions| {
+                (others.max(0.0), Guide::learn(directions, places(), SHARP * self.scene.geometry.radius()))
+            }),
         }
     }
 

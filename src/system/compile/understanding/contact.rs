@@ -15,10 +15,10 @@ const ALL_POINTS: usize = 20_000;
 const CROSSINGS: usize = 10_000;
 
 /// Hits on two parts of different nodes that lie on each other, as one ray meets them; one pair for each pair of parts.
-pub(super) type Contacts = BTreeMap<[u32; 2], [Hit; 2]>;
+pub(in crate::system::compile) type Contacts = BTreeMap<[u32; 2], [Hit; 2]>;
 
 /// Looks at points of the triangles, of every n-th if there are many, from just above.
-pub(super) fn contacts(scene: &Scene) -> Contacts {
+pub(in crate::system::compile) fn contacts(scene: &Scene) -> Contacts {
     let geometry = &scene.geometry;
     let count = geometry.len();
     let tolerance = (0..count as u32).map(|i| geometry.tolerance(i)).fold(0.0, f64::max);

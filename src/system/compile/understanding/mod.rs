@@ -15,6 +15,7 @@ use glam::DVec3;
 
 pub use beam::Beam;
 pub use budget::{ANGLES, Budget, Share};
+pub(super) use contact::contacts;
 pub(super) use doubt::doubts;
 pub use optics::Optics;
 
