@@ -187,9 +187,8 @@ fn the_small_telescope_sees_the_sky_beside_its_secondary_mirror() {
     let flux = |angle: &str| sources[format!("sky {angle}").as_str()];
     let (image, beside, far) = (flux("0 deg"), flux("12 deg"), flux("80 deg"));
     assert!(far.mean > 0.0 && far.mean + 4.0 * far.error < 1e-8 * image.mean, "{far:?}, image {image:?}");
-    for dark in ["6 deg", "20 deg"].map(flux) {
-        assert!(beside.mean - dark.mean > 0.0, "{beside:?}, {dark:?}");
-    }
+    let dark = flux("20 deg");
+    assert!(beside.mean > 10.0 * dark.mean, "{beside:?}, {dark:?}");
 }
 
 #[test]
