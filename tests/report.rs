@@ -93,6 +93,7 @@ fn detector(flux: Estimate, unit: &str, classes: &[(&str, f64, f64)]) -> Detecto
         classes: named(classes),
         brightest_batch: 0.004,
         variance_of_variance: 0.03,
+        largest: None,
         sources: BTreeMap::new(),
         unresolved: 0.124,
     }

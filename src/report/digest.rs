@@ -45,6 +45,12 @@ pub fn merit(detector: &DetectorResult, run: &RunInfo) -> Option<String> {
     })
 }
 
+/// The largest arrival in words.
+pub fn largest(detector: &DetectorResult) -> Option<String> {
+    let largest = detector.largest.as_ref()?;
+    Some(format!("largest arrival: {} % of the flux, {}", rounded(100.0 * largest.share), largest.sequence))
+}
+
 /// Two digits of a number.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)

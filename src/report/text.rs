@@ -81,6 +81,9 @@ fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult, run: &Ru
     if let Some(merit) = digest::merit(detector, run) {
         writeln!(out, "  {merit}")?;
     }
+    if let Some(largest) = digest::largest(detector) {
+        writeln!(out, "  {}", shortened(&largest))?;
+    }
     for (class, flux, share) in digest::classes(detector) {
         writeln!(out, "  {class:<14} {:>26} W {share:>12} %", estimate(flux))?;
     }

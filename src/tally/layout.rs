@@ -146,6 +146,11 @@ impl Layout {
         TOTALS + CUTS + LOSSES + self.parts + medium
     }
 
+    /// Number of detectors.
+    pub fn detectors(&self) -> usize {
+        self.detectors.len()
+    }
+
     /// Flux on a detector.
     pub fn detector(&self, detector: usize) -> usize {
         self.detectors[detector]

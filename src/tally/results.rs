@@ -61,12 +61,23 @@ pub struct DetectorResult {
     /// Relative variance of the variance of the mean, from the batches: about 2 / batches where they are normal, and more
     /// the fewer paths bring most of the flux.
     pub variance_of_variance: f64,
+    /// The largest arrival; null if there was none.
+    pub largest: Option<LargestResult>,
     /// Flux by class, W: "signal", "direct leak", "ghost 1", "scatter 1", ... All rows add up to `flux_w`.
     pub classes: BTreeMap<String, Estimate>,
     /// Flux by source, W.
     pub sources: BTreeMap<String, Estimate>,
     /// Fraction of bins with fewer than 30 contributing source rays among those with any, 0..1.
     pub unresolved: f64,
+}
+
+/// The largest arrival on a detector.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LargestResult {
+    /// Share that it has of all flux that arrived, 0..1: where it is large, the error is a guess.
+    pub share: f64,
+    /// Its path, as in the table of paths.
+    pub sequence: String,
 }
 
 /// What a run learned of importance before it began.

@@ -1,6 +1,7 @@
 //! The bookkeeper: turns what happens to packets into sums in slots.
 
 use super::backward::Backward;
+use super::largest::Largest;
 use super::paths::{Candidates, Rows};
 use crate::detector::Arrival;
 use crate::packet::Ancestry;
@@ -15,6 +16,7 @@ pub struct Book<'a, const V: usize> {
     /// Rows of the path table; `None` in the pilot, which collects candidates instead.
     pub rows: Option<&'a Rows>,
     pub candidates: Candidates,
+    pub largest: Largest<V>,
     /// Flights from event to event.
     pub segments: u64,
     /// Scatter events that were drawn by importance.
@@ -32,6 +34,7 @@ impl<'a, const V: usize> Book<'a, V> {
             live,
             rows,
             candidates: Candidates::default(),
+            largest: Largest::new(layout.detectors()),
             segments: 0,
             guided: 0,
             backward: None,
@@ -94,6 +97,7 @@ impl<'a, const V: usize> Book<'a, V> {
             return self.candidates.note(detector, ancestry, flux.into_iter().fold(0.0, f64::max));
         };
         self.live.add(self.layout.detector(detector), flux);
+        self.largest.note(detector, ancestry, flux);
         let (class, source) = (ancestry.class().index(), ancestry.source.into());
         self.live.add(self.layout.class(detector, class), flux);
         self.live.add(self.layout.source(detector, source), flux);

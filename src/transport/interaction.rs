@@ -36,6 +36,8 @@ pub(super) struct Meeting<'a, const V: usize> {
     /// Whether light arrives at the front of the acting face.
     pub(super) front: bool,
     pub(super) part: u32,
+    /// Of the acting face.
+    pub(super) triangle: u32,
     pub(super) surfaces: [&'a Surface; V],
     pub(super) shares: [Shares; V],
     pub(super) frame: Frame,
@@ -90,7 +92,7 @@ pub(super) fn meet<const V: usize>(
     let shares = each(&surfaces, |lane| surfaces[lane].shares(&at[lane]));
     let refracted = refraction::refract(wi, index[0].re, index[1].re);
     let part = scene.part_of[hit.triangle as usize];
-    Meeting { crossed, front: hit.front, part, surfaces, shares, frame, at, refracted }
+    Meeting { crossed, front: hit.front, part, triangle: hit.triangle, surfaces, shares, frame, at, refracted }
 }
 
 /// A value for every lane, worked out once for those that have the same surface.
@@ -315,7 +317,7 @@ fn watch<const V: usize, W: Watch>(
             distance: crossing.distance,
             part: meeting.part,
             front: meeting.front,
-            normal: meeting.frame.z,
+            triangle: meeting.triangle,
             angle: wi.x.hypot(wi.y).atan2(wi.z),
             media: meeting.crossed.media,
             flux,

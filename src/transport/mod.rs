@@ -6,6 +6,7 @@ mod bulk;
 mod film;
 pub mod importance;
 mod interaction;
+mod largest;
 pub mod paths;
 mod scatter;
 pub mod summary;
@@ -20,7 +21,8 @@ use crate::tally::results::GuidanceResult;
 use crate::tally::{Fold, Layout, Live, Sums};
 use backward::Backward;
 use book::Book;
-use importance::{Importance, Learned, Lit};
+use importance::{Importance, Lit};
+use largest::Largest;
 use paths::{Candidates, Rows};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -41,6 +43,8 @@ pub struct Counts<const V: usize> {
     /// Flux on every detector in every batch, W.
     pub fluxes: Vec<Vec<[f64; V]>>,
     pub batch_rays: u64,
+    /// The largest single contributions.
+    pub largest: Largest<V>,
     /// Flights from event to event, pilot not included.
     pub segments: u64,
     /// True if it was told to stop.
@@ -93,9 +97,9 @@ pub fn batchwise<const V: usize>(
         let gain = trial::<V>(&plain, &learned.importance, stop);
         guided(scene, settings, &learned.importance, gain)
     });
-    let Learned { importance, lit } =
-        learned.unwrap_or_else(|| Learned { importance: Importance::declared(scene), lit: Lit::default() });
-    let importance = if guidance.as_ref().is_some_and(|guidance| guidance.used) { &importance } else { &declared };
+    let used = guidance.as_ref().is_some_and(|guidance| guidance.used);
+    let (learned, lit) = learned.map_or((None, Lit::default()), |learned| (Some(learned.importance), learned.lit));
+    let importance = learned.as_ref().filter(|_| used).unwrap_or(&declared);
     let backward = (settings.trace == Trace::Backward).then(|| Backward::new(scene, lit));
     let plan = Plan { importance, backward: backward.as_ref(), ..plain };
     let rows = pilot::<V>(&plan, stop);
@@ -106,6 +110,7 @@ pub fn batchwise<const V: usize>(
     let pool = Mutex::new(Vec::new());
     let mut fold = Fold::default();
     let mut fluxes = vec![Vec::new(); scene.detectors.len()];
+    let mut largest = Largest::new(scene.detectors.len());
     let (mut done, mut segments) = (0, 0);
     let stages = stages(settings);
     'stages: for &stage in &stages {
@@ -118,9 +123,10 @@ pub fn batchwise<const V: usize>(
                 .map(|batch| (!stop.load(Ordering::Relaxed)).then(|| plan.counted(&layout, &rows, &pool, batch)))
                 .collect();
             for finished in chunk {
-                let Some((sums, flights)) = finished else { break 'stages };
+                let Some((sums, batch_largest, flights)) = finished else { break 'stages };
                 batch(&layout, &rows, &sums);
                 fluxes.iter_mut().enumerate().for_each(|(d, all)| all.push(sums.values(layout.detector(d))));
+                largest.merge(batch_largest);
                 fold.push(sums);
                 segments += flights;
                 done += 1;
@@ -138,7 +144,7 @@ pub fn batchwise<const V: usize>(
         }
     }
     let interrupted = stop.load(Ordering::Relaxed) && done < settings.batches();
-    Counts { layout, rows, sums: fold.total(), fluxes, batch_rays, segments, interrupted, guidance }
+    Counts { layout, rows, sums: fold.total(), fluxes, largest, batch_rays, segments, interrupted, guidance }
 }
 
 /// Runs of fewer source rays learn nothing: it would take longer than they do.
@@ -202,23 +208,23 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The sums of a batch, and its flights.
+    /// The sums of a batch, its largest contributions, and its flights.
     fn counted<const V: usize>(
         &self,
         layout: &'a Layout,
         rows: &'a Rows,
         pool: &Mutex<Vec<Live<V>>>,
         batch: u64,
-    ) -> (Sums<V>, u64) {
+    ) -> (Sums<V>, Largest<V>, u64) {
         let idle = pool.lock().ok().and_then(|mut pool| pool.pop());
         let live = idle.unwrap_or_else(|| Live::new(layout.len()));
         let mut book = self.trace(Book::new(layout, live, Some(rows)), self.settings.seed, batch);
         let sums = book.finish();
-        let segments = book.segments;
+        let (largest, segments) = (book.largest, book.segments);
         if let Ok(mut pool) = pool.lock() {
             pool.push(book.live);
         }
-        (sums, segments)
+        (sums, largest, segments)
     }
 }
 

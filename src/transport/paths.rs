@@ -83,7 +83,7 @@ impl Candidates {
     }
 }
 
-fn row(detector: usize, ancestry: &Ancestry) -> Row {
+pub(super) fn row(detector: usize, ancestry: &Ancestry) -> Row {
     Row {
         detector,
         source: ancestry.source as usize,

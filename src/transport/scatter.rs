@@ -46,7 +46,7 @@ pub fn plan<'a, const V: usize, W: Watch>(
         source: packet.ancestry.source,
         part: meeting.part,
         front: meeting.front,
-        normal: meeting.frame.z,
+        triangle: meeting.triangle,
         point: packet.ray.origin,
         flux,
         start: walk.start,

@@ -19,6 +19,9 @@ const RESOLVED: u64 = 30;
 /// Share of a detector's flux in one batch above which its error is a guess; every batch has 3 % of it at most where all are alike.
 const BRIGHTEST: f64 = 0.25;
 
+/// Share of a detector's flux in one arrival above which the same holds.
+const LARGEST: f64 = 0.1;
+
 /// Lost flux above this fraction of the emitted makes a run not to be trusted.
 const MOST_LOST: f64 = 1e-6;
 
@@ -158,7 +161,21 @@ impl<const V: usize> Teller<'_, V> {
                 apart.map(|(s, source)| (format!("{} from {}", detector.label, source.label), layout.source(d, s)));
             whole.into_iter().chain(apart.filter_map(|(label, slot)| caution(label, slot))).collect::<Vec<_>>()
         };
-        self.scene.detectors.iter().enumerate().flat_map(of).collect()
+        let rare = (0..self.scene.detectors.len()).filter_map(|d| self.rare(d));
+        self.scene.detectors.iter().enumerate().flat_map(of).chain(rare).collect()
+    }
+
+    /// One arrival that brings too much, in words.
+    fn rare(&self, d: usize) -> Option<String> {
+        let largest = self.largest(d).filter(|largest| largest.share > LARGEST)?;
+        let (label, percent) = (&self.scene.detectors[d].label, 100.0 * largest.share);
+        let doubt = format!("one arrival brought {percent:.0} % of the flux, the error bar cannot be trusted");
+        Some(format!("{label}: {doubt}: {}", largest.sequence))
+    }
+
+    fn largest(&self, d: usize) -> Option<LargestResult> {
+        let sum = self.sums().values(self.counts.layout.detector(d))[self.lane];
+        self.counts.largest.told(self.scene, d, self.lane, sum)
     }
 
     fn detector(&self, d: usize) -> DetectorResult {
@@ -184,6 +201,7 @@ impl<const V: usize> Teller<'_, V> {
             unit: self.scene.detectors[d].grid.unit().into(),
             brightest_batch: self.sums().brightest(slot, self.lane),
             variance_of_variance: variance_of_variance(self.counts.fluxes[d].iter().map(|flux| flux[self.lane])),
+            largest: self.largest(d),
             classes,
             sources,
             unresolved,

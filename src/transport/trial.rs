@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Part of the run's rays that each way is tried with, and the least and the most.
 const PART: u64 = 64;
-const RAYS: [u64; 2] = [2048, 1 << 17];
+const RAYS: [u64; 2] = [4096, 1 << 17];
 /// Batches that the trial is made of, so that it has errors.
 const BATCHES: u64 = 32;
 /// Classes below this share of the stray light do not count.

@@ -17,8 +17,8 @@ pub struct Sight {
     pub part: u32,
     /// Whether light arrives at its front.
     pub front: bool,
-    /// Of the face, towards where light arrives; unit.
-    pub normal: DVec3,
+    /// Of the acting face.
+    pub triangle: u32,
     /// Angle of incidence, rad.
     pub angle: f64,
     /// Indices of the media before and beyond.

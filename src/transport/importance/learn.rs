@@ -133,9 +133,9 @@ impl Teacher<'_> {
     fn branches(&self, first: &Light, looks: u64, patches: &Patches) -> Option<Vec<f64>> {
         let mut whole = vec![0.0; self.scene.sources.len()];
         first.visits.iter().for_each(|visit| whole[visit.source as usize] += visit.worth(patches));
-        let rays = |quota: &Quota| (quota.count * looks) as f64;
-        let branches: Vec<f64> =
-            whole.iter().zip(self.quotas).map(|(whole, quota)| whole / (BRANCHES * rays(quota))).collect();
+        let emitted = |source: &Source| looks as f64 * source.flux;
+        let sources = whole.iter().zip(&self.scene.sources);
+        let branches: Vec<f64> = sources.map(|(whole, source)| whole / (BRANCHES * emitted(source))).collect();
         let least = branches.iter().copied().filter(|branch| *branch > 0.0).fold(f64::INFINITY, f64::min);
         // Light of which nothing is known may be as faint as the faintest.
         least
@@ -266,7 +266,7 @@ struct Visit {
     source: u16,
     part: u32,
     front: bool,
-    normal: DVec3,
+    triangle: u32,
     point: DVec3,
     /// W
     flux: f64,
@@ -274,7 +274,7 @@ struct Visit {
 
 impl Visit {
     fn worth(&self, patches: &Patches) -> f64 {
-        patches.at(self.part, self.front, self.normal, self.point).map_or(0.0, |patch| self.flux * patch.worth)
+        patches.at(self.part, self.front, self.triangle, self.point).map_or(0.0, |patch| self.flux * patch.worth)
     }
 }
 
@@ -293,7 +293,7 @@ impl Watch for Lantern<'_> {
     }
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
-        let Sight { part, front, normal, point, distance, flux, fractions, direction, .. } = sight();
+        let Sight { part, front, triangle, point, distance, flux, fractions, direction, .. } = sight();
         if !self.scene.scatters(part, front) {
             return;
         }
@@ -302,14 +302,14 @@ impl Watch for Lantern<'_> {
                 source: self.source,
                 part,
                 front,
-                normal,
+                triangle,
                 point,
                 flux: flux * fractions[2],
             });
         } else {
             let way = Way::Scattered;
             let towards = -direction;
-            self.light.sightings.push(Sighting { part, front, normal, point, towards, distance, weight: flux, way });
+            self.light.sightings.push(Sighting { part, front, triangle, point, towards, distance, weight: flux, way });
         }
     }
 

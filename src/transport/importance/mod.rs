@@ -58,7 +58,8 @@ pub struct Importance {
 #[derive(Debug)]
 pub struct Map {
     pub patches: Patches,
-    /// Worth of a whole branch of every source's light; empty: every packet goes on in one, whatever it is worth.
+    /// Worth of a whole branch that carries all the flux of a ray, of every source; empty: every packet goes on in one, whatever it
+    /// is worth.
     pub branches: Vec<f64>,
 }
 
@@ -84,8 +85,8 @@ pub struct Occasion {
     pub source: u16,
     pub part: u32,
     pub front: bool,
-    /// Of the face, towards where light arrived; unit.
-    pub normal: DVec3,
+    /// Of the face.
+    pub triangle: u32,
     /// Scene coordinates, m.
     pub point: DVec3,
     /// Scattered flux, W, and that with which its source ray began.
@@ -111,7 +112,7 @@ pub struct Advice<'a> {
     point: DVec3,
     /// Share that goes evenly into all directions.
     evenly: f64,
-    /// What a watt that is scattered evenly is worth, in branches; `None`: every branch lives.
+    /// What a whole ray that is scattered evenly is worth, in branches; `None`: every branch lives.
     worth: Option<f64>,
 }
 
@@ -183,7 +184,8 @@ impl Advice<'_> {
         let learned = if self.lobes < 1.0 { (mixed - self.lobes * lobes).max(0.0) / (1.0 - self.lobes) } else { 0.0 };
         let towards = PI * (1.0 - ANYWHERE) * learned / cosine + ANYWHERE;
         let least = if worth > 0.0 { 0.0 } else { UNSEEN };
-        (flux * worth * towards).max(flux / start).max(least).min(1.0)
+        let share = flux / start;
+        (share * worth * towards).max(share).max(least).min(1.0)
     }
 }
 
@@ -206,12 +208,14 @@ impl Importance {
             let both = if advice.lobes < 1.0 { 2.0 } else { 1.0 };
             return Advice { branches: both * (occasion.flux / occasion.level).min(1.0), ..advice };
         };
-        let patch =
-            map.patches.at(occasion.part, occasion.front, occasion.normal, occasion.point).filter(|_| occasion.opaque);
+        let patch = map
+            .patches
+            .at(occasion.part, occasion.front, occasion.triangle, occasion.point)
+            .filter(|_| occasion.opaque);
         let branch = map.branches.get(occasion.source as usize).filter(|_| occasion.opaque);
         let worth = branch.map(|branch| patch.map_or(0.0, |p| p.worth / branch));
         let least = if occasion.broad { 1.0 } else { 1.0 + whole };
-        let branches = worth.map_or(1.0, |worth| (occasion.flux * worth).clamp(least, MOST_BRANCHES));
+        let branches = worth.map_or(1.0, |worth| (occasion.flux / occasion.start * worth).clamp(least, MOST_BRANCHES));
         let lobes = if occasion.broad { BROAD } else { NARROW };
         let found = patch.into_iter().flat_map(|patch| patch.targets.iter().map(|&(target, share)| (share, target)));
         let wishes = declared.iter().map(|&target| (DECLARED, target)).chain(found);

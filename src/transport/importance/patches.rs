@@ -27,11 +27,15 @@ const APERTURE: f64 = 0.3;
 const SHARP: f64 = 1e-9;
 /// Pieces of area into which all parts together are cut to measure patches.
 const PIECES: f64 = 65_536.0;
+/// Pieces that tell how large a patch is.
+const FEW: usize = 8;
 
 /// Patches of every side of every part.
 #[derive(Debug, Default)]
 pub struct Patches {
-    /// First node of every [`facing`]; `NOWHERE`: never seen.
+    /// The way that every triangle faces.
+    ways: Vec<u8>,
+    /// First node of every [`side`](Patches::side); `NOWHERE`: never seen.
     roots: Vec<u32>,
     nodes: Vec<Node>,
     patches: Vec<Patch>,
@@ -67,25 +71,24 @@ type Piece = (DVec3, f64);
 impl Patches {
     /// The map from sightings; what they came through is appended to `targets`.
     pub fn learn(scene: &Scene, sightings: &[Sighting], targets: &mut Vec<Target>) -> Patches {
+        let ways = ways(scene);
+        let map = Patches { ways, roots: vec![NOWHERE; 2 * WAYS * scene.parts.len()], ..Patches::default() };
         let mut sides: BTreeMap<usize, Vec<&Sighting>> = BTreeMap::new();
-        sightings.iter().for_each(|s| sides.entry(facing(s.part, s.front, s.normal)).or_default().push(s));
+        sightings.iter().for_each(|s| sides.entry(map.side(s.part, s.front, s.triangle)).or_default().push(s));
         let parts: BTreeSet<u32> = sightings.iter().map(|s| s.part).collect();
-        let mut pieces = pieces(scene, &parts);
-        let mut learner = Learner { scene, targets, known: BTreeMap::new(), map: Patches::default() };
-        learner.map.roots = vec![NOWHERE; 2 * WAYS * scene.parts.len()];
+        let mut pieces = pieces(scene, &parts, &map);
+        let mut learner = Learner { scene, targets, known: BTreeMap::new(), map };
         for (side, mut sightings) in sides {
-            // Pieces are called by their fronts; their backs face the other way.
-            let front = if (side / WAYS).is_multiple_of(2) { side } else { (side - WAYS) ^ 1 };
-            let own = pieces.entry(front).or_default();
+            let own = pieces.entry(side / 2 * 2).or_default();
             let root = learner.divide(&mut sightings, own);
             learner.map.roots[side] = root;
         }
         learner.map
     }
 
-    /// The patch of a place on a side of a part; `normal` towards where light arrives.
-    pub fn at(&self, part: u32, front: bool, normal: DVec3, point: DVec3) -> Option<&Patch> {
-        let mut number = *self.roots.get(facing(part, front, normal))?;
+    /// The patch of a place on a side of a part, on one of its triangles.
+    pub fn at(&self, part: u32, front: bool, triangle: u32, point: DVec3) -> Option<&Patch> {
+        let mut number = *self.roots.get(self.side(part, front, triangle))?;
         if number == NOWHERE {
             return None;
         }
@@ -97,10 +100,19 @@ impl Patches {
         }
     }
 
+    /// The number of a side of a part, one for every way that its triangles face: `2 (6 part + way) + (0 front, 1 back)`.
+    fn side(&self, part: u32, front: bool, triangle: u32) -> usize {
+        2 * (WAYS * part as usize + self.ways[triangle as usize] as usize) + !front as usize
+    }
+
     /// Memory held, bytes.
     pub fn bytes(&self) -> usize {
         let directions: usize = self.patches.iter().filter_map(|p| p.rest.as_ref()).map(|(_, d)| d.bytes()).sum();
-        size_of_val(&self.roots[..]) + size_of_val(&self.nodes[..]) + size_of_val(&self.patches[..]) + directions
+        self.ways.len()
+            + size_of_val(&self.roots[..])
+            + size_of_val(&self.nodes[..])
+            + size_of_val(&self.patches[..])
+            + directions
     }
 
     /// Number of patches.
@@ -116,28 +128,39 @@ impl Patches {
 /// Ways that a face may face.
 const WAYS: usize = 6;
 
-/// The number of a side of a part and the axis that its normal is nearest to: `6 (2 part + (0 front, 1 back)) + 2 axis + (0 along, 1 against)`.
-fn facing(part: u32, front: bool, normal: DVec3) -> usize {
+/// The axis that the normal of a face is nearest to, and which end of it: `2 axis + (0 along, 1 against)`.
+fn way(normal: DVec3) -> u8 {
     let axis = normal.abs().max_position();
-    WAYS * (2 * part as usize + !front as usize) + 2 * axis + (normal[axis] < 0.0) as usize
+    (2 * axis + (normal[axis] < 0.0) as usize) as u8
 }
 
-/// Triangles of `parts` in pieces of about equal area, by the way that their fronts face.
-fn pieces(scene: &Scene, parts: &BTreeSet<u32>) -> BTreeMap<usize, Vec<Piece>> {
+/// The way that every triangle and exact face faces; parts with exact faces, which turn, are not told apart.
+fn ways(scene: &Scene) -> Vec<u8> {
+    let geometry = &scene.geometry;
+    let exact: BTreeSet<u32> = scene.part_of.iter().skip(geometry.len()).copied().collect();
+    let flat = |t: usize| t < geometry.len() && !exact.contains(&scene.part_of[t]);
+    (0..scene.part_of.len()).map(|t| if flat(t) { way(geometry.triangle(t as u32).normal()) } else { 0 }).collect()
+}
+
+/// Triangles of `parts` in pieces of about equal area, by the fronts of the sides that they are on.
+fn pieces(scene: &Scene, parts: &BTreeSet<u32>, map: &Patches) -> BTreeMap<usize, Vec<Piece>> {
     let geometry = &scene.geometry;
     let mine = || (0..geometry.len() as u32).filter(|&t| parts.contains(&scene.part_of[t as usize]));
     let whole: f64 = mine().map(|t| geometry.area(t)).sum();
     let mut pieces: BTreeMap<usize, Vec<Piece>> = BTreeMap::new();
+    // One sequence for all triangles: where each had its own, strips of a tube would all be left out at the same height.
+    let mut next = 0;
     for number in mine() {
         let triangle = geometry.triangle(number);
         let area = triangle.area();
         let count = (PIECES * area / whole).ceil().clamp(1.0, PIECES);
-        let list = pieces.entry(facing(scene.part_of[number as usize], true, triangle.normal())).or_default();
-        for i in 0..count as u32 {
+        let list = pieces.entry(map.side(scene.part_of[number as usize], true, number)).or_default();
+        for i in next..next + count as u32 {
             // The additive recurrence of the plastic number fills the triangle evenly (Roberts, 2018).
             let u = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|a| (0.5 + a * f64::from(i)).fract());
             list.push((triangle.at(sampling::triangle(u)), area / count));
         }
+        next += count as u32;
     }
     pieces
 }
@@ -170,9 +193,11 @@ impl Learner<'_> {
     }
 
     fn patch(&mut self, sightings: &[&Sighting], pieces: &[Piece]) -> Patch {
-        // A patch between pieces is smaller than one.
-        let area: f64 = pieces.iter().map(|piece| piece.1).sum();
+        let known: f64 = pieces.iter().map(|piece| piece.1).sum();
+        // So few pieces may have fallen in by chance; sightings fill the patch.
+        let filled = if pieces.len() < FEW { box_area(sightings) } else { 0.0 };
         let least = 0.5 * self.scene.geometry.radius().powi(2) / PIECES;
+        let area = known.max(filled).max(least);
         let whole: f64 = sightings.iter().map(|s| s.weight).sum();
         let mut ways: BTreeMap<Way, f64> = BTreeMap::new();
         sightings.iter().for_each(|s| *ways.entry(s.way).or_default() += s.weight);
@@ -187,7 +212,7 @@ impl Learner<'_> {
         let directions = Directions::learn(rest().map(|s| (s.towards, s.weight)));
         let places = || rest().map(|s| (s.point + s.distance * s.towards, s.weight)).collect();
         Patch {
-            worth: whole / (PI * area.max(least)),
+            worth: whole / (PI * area),
             targets,
             rest: directions.map(|directions| {
                 (others.max(0.0), Guide::learn(directions, places(), SHARP * self.scene.geometry.radius()))
@@ -212,19 +237,31 @@ impl Learner<'_> {
     }
 }
 
+/// Largest face of the box around sightings, m2.
+fn box_area(sightings: &[&Sighting]) -> f64 {
+    let [a, b, c] = spread(sightings).to_array();
+    (a * b).max(b * c).max(c * a)
+}
+
+/// Sides of the box around sightings, m.
+fn spread(sightings: &[&Sighting]) -> DVec3 {
+    let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = sightings.iter().fold(ends, |(l, h), s| (l.min(s.point), h.max(s.point)));
+    high - low
+}
+
 /// Where to divide: half the sightings on each side, across where they spread most; `None` if they are too few or in one place.
 fn plane(sightings: &[&Sighting]) -> Option<(usize, f64)> {
     if sightings.len() < 2 * CROWD {
         return None;
     }
-    let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = sightings.iter().fold(ends, |(l, h), s| (l.min(s.point), h.max(s.point)));
-    let spread = high - low;
+    let spread = spread(sightings);
     let axis = (0..3).max_by(|&a, &b| spread[a].total_cmp(&spread[b]))?;
     let mut places: Vec<f64> = sightings.iter().map(|s| s.point[axis]).collect();
     let middle = places.len() / 2;
     let at = *places.select_nth_unstable_by(middle, f64::total_cmp).1;
-    (at > low[axis]).then_some((axis, at))
+    // More than half of them may be in one place.
+    (places[..middle].iter().any(|place| *place < at)).then_some((axis, at))
 }
 
 /// The box around a part.

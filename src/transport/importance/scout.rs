@@ -33,8 +33,8 @@ pub enum Way {
 pub struct Sighting {
     pub part: u32,
     pub front: bool,
-    /// Of the face, towards where it arrived; unit.
-    pub normal: DVec3,
+    /// Of the face.
+    pub triangle: u32,
     pub point: DVec3,
     /// Unit, to where it came from.
     pub towards: DVec3,
@@ -69,7 +69,7 @@ impl Watch for Scout<'_> {
             self.sightings.push(Sighting {
                 part: sight.part,
                 front: sight.front,
-                normal: sight.normal,
+                triangle: sight.triangle,
                 point: sight.point,
                 towards: -sight.direction,
                 distance: sight.distance,

@@ -2,118 +2,18 @@
 //! class and pixel, on any number of threads, with a ledger that closes.
 
 #[allow(unused_imports, reason = "one harness, several test targets")]
-#[path = "support/mod.rs"]
+#[path = "../support/mod.rs"]
 mod support;
+mod ten;
+mod ways;
+mod wrong;
 
 use glam::DVec3;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use straylight::aim::Target;
-use straylight::geometry::Frame;
-use straylight::math::statistics::chi_squared_tail;
 use straylight::settings::{Guidance, Trace};
-use straylight::system::compile::{Compiled, compile};
-use straylight::system::document::Document;
-use straylight::tally::results::{Estimate, Results};
-use straylight::transport::{self, summary};
-use support::shapes::{cuboid, disk, facing, flipped, moved, rectangle};
+use straylight::tally::results::Results;
+use support::shapes::{disk, flipped, moved, rectangle};
 use support::{Case, Model, compiled};
-
-/// How a run draws.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    Plain,
-    /// Every surface aims at this box: centre (world, m) and half sides (m).
-    Aimed([f64; 3], [f64; 3]),
-    Learned,
-    /// From the detectors.
-    Backward,
-    /// The same after learning where light is.
-    LearnedBackward,
-}
-
-fn system(name: &str) -> Compiled {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("systems").join(name).join("system.ron");
-    let document = Document::read(&path).unwrap_or_else(|e| panic!("{:#?}", e.problems()));
-    compile(&document).unwrap_or_else(|e| panic!("{:#?}", e.problems()))
-}
-
-fn trace(mut compiled: Compiled, way: Way, rays: u64, seed: u64, threads: usize) -> Results {
-    (compiled.settings.rays, compiled.settings.seed) = (rays, seed);
-    match way {
-        Way::Plain => compiled.settings.importance = Guidance::Off,
-        Way::Learned => compiled.settings.importance = Guidance::On,
-        Way::Backward => {
-            (compiled.settings.importance, compiled.settings.trace) = (Guidance::Off, Trace::Backward);
-        }
-        Way::LearnedBackward => {
-            (compiled.settings.importance, compiled.settings.trace) = (Guidance::On, Trace::Backward);
-        }
-        Way::Aimed(centre, half) => {
-            compiled.settings.importance = Guidance::Off;
-            let scene = &mut compiled.scene;
-            let centre = DVec3::from(centre) - scene.shift;
-            let target = Target { label: "box".into(), frame: Frame::WORLD, centre, half: half.into() };
-            scene.targets.push(target);
-            scene.parts.iter_mut().for_each(|part| part.aims = [vec![0], vec![0]]);
-        }
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-    let (scene, settings) = (&compiled.scene, &compiled.settings);
-    let counts = pool.install(|| transport::run::<1>(scene, settings, &AtomicBool::new(false), &|_| ()));
-    summary::results(scene, settings, &counts, 0, compiled.inputs.clone(), Vec::new())
-}
-
-/// Chance of differences like these, squared and in their own errors, and how many there are. What few source rays fed has no
-/// error bar worth the name.
-fn agreement(a: &Results, b: &Results) -> (f64, usize) {
-    let mut pulls = Vec::new();
-    let mut compare = |a: Estimate, b: Estimate| {
-        let error = a.error.hypot(b.error);
-        if error > 0.0 {
-            pulls.push((a.mean - b.mean) / error);
-        }
-    };
-    for (name, one) in &a.detectors {
-        let other = &b.detectors[name];
-        for (class, flux) in &one.classes {
-            let found = other.classes.get(class).copied().unwrap_or_default();
-            if flux.error < 0.1 * flux.mean && found.error < 0.1 * found.mean {
-                compare(*flux, found);
-            }
-        }
-    }
-    for (one, other) in a.maps.iter().zip(&b.maps) {
-        for bin in 0..one.mean.len() {
-            if one.rays[bin].min(other.rays[bin]) >= 200 {
-                let of = |map: &straylight::tally::results::MapResult| Estimate {
-                    mean: map.mean[bin],
-                    error: map.error[bin],
-                };
-                compare(of(one), of(other));
-            }
-        }
-    }
-    let chi: f64 = pulls.iter().map(|pull| pull * pull).sum();
-    (chi_squared_tail(chi, pulls.len() as f64), pulls.len())
-}
-
-/// Runs a system in several ways and holds them to each other.
-fn agree(name: &str, make: impl Fn() -> Compiled, rays: u64, ways: &[Way]) {
-    let plain = trace(make(), Way::Plain, rays, 1, 2);
-    for (i, &way) in ways.iter().enumerate() {
-        let other = trace(make(), way, rays, 2 + i as u64, 2);
-        let (p, count) = agreement(&plain, &other);
-        println!("{name}, {way:?}: {count} numbers agree with p = {p:.3}");
-        for (detector, found) in &other.detectors {
-            println!("    {detector}: {:?}, plain {:?}", found.flux_w, plain.detectors[detector].flux_w);
-        }
-        assert!(count > 1 && p > 1e-3, "{name}, {way:?}: {count} numbers differ with p = {p}");
-        let residual = other.ledger_w.residual;
-        assert!(residual.mean.abs() < 4.5 * residual.error + 1e-12, "{name}, {way:?}: residual {residual:?}");
-        assert!(other.trusted, "{name}, {way:?}: {:?}", other.warnings);
-    }
-}
+use ways::{Way, agree, system, trace};
 
 #[test]
 fn a_sphere_of_many_bounces() {
@@ -174,28 +74,9 @@ fn a_baffled_tube_from_its_detector() {
 /// Light polarised in the source goes through a quarter-wave plate, off a metal, through glass and a polariser: rows of weights go back.
 #[test]
 fn polarised_light_backwards() {
-    let upright = |x: f64| moved(facing(rectangle(60.0, 60.0), DVec3::X), DVec3::new(x, 0.0, 20.0));
-    let model = Model::new()
-        .add("plate", moved(rectangle(60.0, 60.0), DVec3::new(0.0, 0.0, 5.0)))
-        .add("mirror", moved(facing(rectangle(60.0, 80.0), DVec3::new(1.0, 0.0, -1.0)), DVec3::new(0.0, 0.0, 20.0)))
-        .add("window", cuboid(DVec3::new(40.0, -40.0, -20.0), DVec3::new(43.0, 40.0, 60.0)))
-        .add("polarizer", upright(48.0));
-    let text = |angle: f64| {
-        format!(
-            r#"media: {{ "glass": Constant(n: 1.8) }},
-            coatings: {{ "quarter": Retarder(axis: "(1, 0.3, 0)", retardance: "90 deg"),
-                "metal": Metal(n: 0.3, k: 1.5), "sheet": Polarizer(axis: "(0, 1, 0.6)") }},
-            surfaces: [(on: Node("plate"), coating: "quarter"), (on: Node("mirror"), coating: "metal"),
-                (on: Node("window"), medium: "glass", specular: Fresnel), (on: Node("polarizer"), coating: "sheet")],
-            sources: {{ "lamp": (flux: "1 W", extent: Disk(radius: "6 mm"), at: "(0, 0, 0) mm",
-                angular: Cone(half_angle: "15 deg"), spectrum: Line("550 nm"), polarization: Linear(angle: "{angle} deg")) }},
-            detectors: {{ "fpa": (on: Disk(at: "(50, 0, 20) mm", normal: "(-1, 0, 0)", radius: "6 mm"),
-                quantity: Irradiance, pixels: (4, 4), side: Front) }},"#
-        )
-    };
     let mut fluxes = Vec::new();
     for angle in [20.0, 65.0, 110.0, 155.0] {
-        let make = || compiled(&text(angle), &model);
+        let make = || ten::polarised(angle);
         agree(&format!("polarised at {angle}"), make, 100_000, &[Way::Backward]);
         fluxes.push(trace(make(), Way::Plain, 20_000, 1, 2).detectors["fpa"].flux_w.mean);
     }
