@@ -80,7 +80,7 @@ function startStage() {
     }
     const light = lightColours();
     if (shown("rays")) add(segments(drawing.ways.filter((way) => isFrom(way) && !isChosen(way)), (way) => [...hex(light.get(key(way))), state.chosen ? 0.15 : 0.75]), 1, 0);
-    if (state.chosen) add(segments(drawing.ways.filter(isChosen), (way) => [...hex(light.get(key(way))), 1]), 2.4, 2);
+    if (state.chosen) add(segments(drawing.ways.filter(isChosen), (way) => [...hex(light.get(key(way))), 1]), 2.6, 0.5);
     if (shown("normals")) add(needles(drawing, flat, 0.02 * camera.radius, [...styleColour("--accent"), 1]), 1, 0);
     legend(palette, light);
     return (buffers = look);
@@ -196,8 +196,18 @@ function startStage() {
   element("axis").dispatchEvent(new Event("input"));
   // The rays of one path [detector, sequence] light up; null: all are alike again.
   return {
-    choose: (path) => {
+    choose: (path, from) => {
       state.chosen = path ? path.join("\n") : null;
+      const said = element("picked");
+      said.replaceChildren();
+      if (path) {
+        const count = drawing.ways.filter(isChosen).length;
+        const back = made("button", { type: "button" }, "back to the table");
+        back.addEventListener("click", () => from.scrollIntoView({ block: "center" }));
+        const rays = count ? `${count} of its rays` : "no ray of it was kept to be drawn";
+        said.append(made("b", {}, path[1].replaceAll(" > ", " › ")), made("br"), `on ${path[0]}: ${rays} `, back);
+        element("stage").scrollIntoView({ block: "nearest" });
+      }
       changed();
     },
   };

@@ -58,7 +58,7 @@ function choose(row) {
   chosen = chosen === row ? null : row;
   chosen?.setAttribute("aria-selected", "true");
   const path = chosen ? [chosen.dataset.detector, chosen.dataset.path] : null;
-  stage?.choose(path);
+  stage?.choose(path, row);
   showLight(path);
 }
 
