@@ -53,9 +53,8 @@ impl Plane {
         }
         let size = |axis: usize| (high[axis] - low[axis]).max(1e-9);
         let across = (0..3).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or(2);
-        let [first, second] = [1, 2, 0].into_iter().filter(|axis| *axis != across).collect::<Vec<_>>()[..] else {
-            return Plane { axes: [2, 1, 0], low, high, scale: 1.0, height: HEIGHTS[0] };
-        };
+        let first = if across == 1 { 2 } else { 1 };
+        let second = 3 - across - first;
         let spread = |axis: usize| ways.iter().map(|way| reach(way, axis)).sum::<f64>();
         let [up, through] = if spread(second) > 1.2 * spread(first) { [second, first] } else { [first, second] };
         let scale = ((WIDTH - 2.0 * MARGIN) / size(across)).min(HEIGHTS[1] / size(up));
