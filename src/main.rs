@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         Verb::Pst(args) => cli::pst::pst(&args),
         Verb::Glare(args) => cli::glare::glare(&args),
         Verb::Check(args) => cli::check::check(&args),
+        Verb::View(args) => cli::view::view(&args),
         Verb::Ray(args) => cli::ray::ray(&args),
         Verb::Bsdf(args) => cli::bsdf::bsdf(&args),
         Verb::Export(args) => cli::export::export(&args),

@@ -94,7 +94,18 @@ impl Scene {
     /// Slots of a run with `rows` rows in its path table.
     pub fn layout(&self, rows: usize) -> Layout {
         let bins = self.detectors.iter().map(|d| d.grid.shape().iter().product()).collect();
-        Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows)
+        let layout = Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows);
+        // Without optics nothing makes an image that would outshine it.
+        if self.has_optics { layout.with_stray_bins() } else { layout }
+    }
+
+    /// Media in front of and behind a part that nothing touches.
+    pub fn sides(&self, part: &Part) -> [u16; 2] {
+        match part.kind {
+            PartKind::Face(solid) => [self.ambient, self.solids[solid as usize].medium],
+            PartKind::Sheet => [self.ambient; 2],
+            PartKind::Between { back, front } => [front, back],
+        }
     }
 
     /// The class of the light that is meant to arrive: the image, or what comes straight where nothing makes one.

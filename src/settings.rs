@@ -25,6 +25,8 @@ pub struct Settings {
     pub importance: Guidance,
     pub trace: Trace,
     pub booking: Booking,
+    /// Whether some of the ways of the strongest paths are kept, to be drawn.
+    pub ways: bool,
 }
 
 /// Whether it is counted what happened on the way of the stray light that arrives.
@@ -90,6 +92,7 @@ impl Default for Settings {
             importance: Guidance::default(),
             trace: Trace::default(),
             booking: Booking::default(),
+            ways: false,
         }
     }
 }

@@ -78,8 +78,9 @@ fn every_way_to_end_has_its_code() {
     let levels = GOOD.replace("run: (", "variants: { \"level\": Bracket },\n    run: (");
     fs::write(folder.path().join("levels.ron"), levels).expect("file");
     let ray = ["ray", "system.ron", "--from", "(0, 0, 9) mm", "--direction"];
-    let cases: [(&[&str], i32); 26] = [
+    let cases: [(&[&str], i32); 27] = [
         (&["check", "system.ron"], 0),
+        (&["view", "system.ron", "-o", "view.html"], 0),
         (&["run", "system.ron", "-o", "out"], 0),
         (&[&ray[..], &["(0, 0, -1)"]].concat(), 0),
         (&["schema"], 0),
@@ -113,7 +114,7 @@ fn every_way_to_end_has_its_code() {
         assert_eq!(said.is_empty(), [0, 3].contains(&wanted), "{arguments:?}: {said}");
         assert_eq!(said.matches("panicked").count(), 0);
     }
-    for file in ["summary.json", "report.html", "paths.csv", "above.fits", "above.png", "above.npy"] {
+    for file in ["summary.json", "report.html", "report.md", "paths.csv", "above.fits", "above.png", "above.npy"] {
         assert!(folder.path().join("out").join(file).is_file(), "{file}");
     }
     for file in ["compare.html", "compare.json", "compare.csv", "baseline/report.html", "level_high/above.fits"] {
@@ -121,6 +122,42 @@ fn every_way_to_end_has_its_code() {
     }
     for file in ["sensitivity.json", "sensitivity.csv"] {
         assert!(folder.path().join("levers").join(file).is_file(), "{file}");
+    }
+}
+
+/// One of each kind: kept, broken, and a ratio to a signal that is not there.
+#[test]
+fn what_is_required_is_answered_first() {
+    let required = r#"requirements: {
+        "wide": (limit: StrayFlux("2 W")),
+        "tight": (detector: "above", limit: StrayFlux("1 nW"), confidence: 0.99),
+        "image": (limit: StrayToSignal(0.1)),
+    },
+    run: ("#;
+    let folder = folder(&GOOD.replace("run: (", required));
+    let (code, output) = outcome(folder.path(), &["run", "system.ron", "-o", "out"]);
+    assert_eq!(code, 0);
+    let said = text(&output.stdout);
+    let verdict = |name: &str| said.lines().find(|line| line.contains(&format!(": {name}: "))).unwrap_or("").to_owned();
+    assert!(verdict("wide").starts_with("PASS: wide: stray flux on above"), "{said}");
+    assert!(verdict("tight").starts_with("FAIL: tight: "), "{said}");
+    assert!(verdict("image").starts_with("NOT RESOLVED: image: stray / signal on above no signal"), "{said}");
+    let page = fs::read_to_string(folder.path().join("out/report.md")).expect("text");
+    assert!(page.contains("| PASS |") && page.contains("| FAIL |") && page.contains("| NOT RESOLVED |"), "{page}");
+}
+
+/// Nothing on a page names another place, and its browser is told to ask for none.
+#[test]
+fn pages_ask_the_network_for_nothing() {
+    let folder = folder(GOOD);
+    assert_eq!(outcome(folder.path(), &["view", "system.ron", "-o", "view.html"]).0, 0);
+    assert_eq!(outcome(folder.path(), &["run", "system.ron", "-o", "out"]).0, 0);
+    for page in ["view.html", "out/report.html"] {
+        let page = fs::read_to_string(folder.path().join(page)).expect("page");
+        assert!(page.contains("default-src 'none'") && page.contains("id=\"drawing\""));
+        let elsewhere = page.matches("http").count() - page.matches("http://www.w3.org/2000/svg").count();
+        assert_eq!(elsewhere - page.matches("http-equiv").count(), 0);
+        assert!(!page.contains(" src=") && !page.contains("import(") && !page.contains("fetch("));
     }
 }
 
@@ -135,6 +172,7 @@ fn help_of_every_verb_ends_with_an_example() {
         &["schema", "--help"],
         &["compare", "--help"],
         &["sensitivity", "--help"],
+        &["view", "--help"],
     ] {
         let said = text(&outcome(here, arguments).1.stdout);
         assert!(said.contains("Example:\n  straylight "), "{arguments:?}: {said}");

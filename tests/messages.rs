@@ -318,6 +318,24 @@ fn a_path_of_the_document_has_a_place_in_its_text() {
 }
 
 #[test]
+fn a_requirement_names_a_detector_and_a_limit_that_can_be_kept() {
+    let with = |requirement: &str| {
+        let run = "    run: (rays: 1_000),";
+        after(run, &format!("    requirements: {{\"veil\": ({requirement})}},\n{run}"))
+    };
+    assert_eq!(with("limit: StrayToSignal(0.01)"), Vec::<String>::new());
+    let wrong = with("detector: \"fpb\", limit: StrayToSignal(0), confidence: 1.0");
+    let tails = [
+        "requirements[\"veil\"].detector: no detector \"fpb\"; did you mean \"fpa\"?",
+        "requirements[\"veil\"].limit: StrayToSignal(0) is out of range; expected a value above 0",
+        "requirements[\"veil\"].confidence: 1.0 is out of range; expected 0.5 or more, below 1",
+    ];
+    assert_eq!(wrong.len(), tails.len(), "{wrong:#?}");
+    assert!(tails.iter().all(|tail| wrong.iter().any(|line| line.ends_with(tail))), "{wrong:#?}");
+    assert!(with("limit: StrayFlux(1)")[0].contains("is a bare number"), "{:#?}", with("limit: StrayFlux(1)"));
+}
+
+#[test]
 fn bytes_that_are_no_text_are_refused() {
     let error = Document::parse(Path::new("a.ron"), b"System(\n  \xff)").err().map(|e| e.to_string());
     assert_eq!(error.as_deref(), Some("a.ron:2:3: this is not UTF-8 text; expected a system written in RON"));

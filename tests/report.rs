@@ -2,13 +2,16 @@
 //!
 //! The files stay under the build folder (`target/tmp/report`) to be looked at.
 
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 use straylight::report;
+use straylight::tally::drawing::{Drawing, DrawnPart, Way};
+use straylight::tally::required::Required;
 use straylight::tally::results::{
-    Axis, DetectorResult, Estimate, GuidanceResult, LedgerResult, MapKind, MapResult, PathResult, Peak, Results,
-    RunInfo,
+    Axis, Convergence, DetectorResult, Estimate, GuidanceResult, LedgerResult, MapKind, MapResult, PathResult, Peak,
+    RequirementResult, Results, RunInfo, Stage, StrayResult,
 };
 
 fn estimate(mean: f64, error: f64) -> Estimate {
@@ -53,6 +56,7 @@ fn map(
         origin: [-6.4e-3, -6.4e-3, 0.1137],
         column_direction: [1.0, 0.0, 0.0],
         row_direction: [0.0, 1.0, 0.0],
+        stray: None,
         side: "front",
     }
 }
@@ -95,8 +99,32 @@ fn detector(flux: Estimate, unit: &str, classes: &[(&str, f64, f64)]) -> Detecto
         variance_of_variance: 0.03,
         largest: None,
         sources: BTreeMap::new(),
+        stray: stray(classes),
+        convergence: convergence(flux),
         unresolved: 0.124,
     }
+}
+
+fn stray(classes: &[(&str, f64, f64)]) -> StrayResult {
+    let stray = classes.iter().filter(|class| class.0 != "signal");
+    let flux_w = estimate(stray.clone().map(|class| class.1).sum(), stray.clone().map(|class| class.2 / 2.0).sum());
+    let signal = classes.iter().find(|class| class.0 == "signal");
+    StrayResult {
+        flux_w,
+        signal_w: signal.map(|class| estimate(class.1, class.2)),
+        to_signal: signal.map(|class| estimate(flux_w.mean / class.1, flux_w.error / class.1)),
+        rays: 21_208,
+        upper_limit_w: 2.86e-9,
+    }
+}
+
+fn convergence(flux: Estimate) -> Convergence {
+    let stage = |batches: u64| {
+        let worse = (245.0 / batches as f64).sqrt();
+        Stage { batches, flux_w: estimate(flux.mean + 0.4 * worse * flux.error, worse * flux.error) }
+    };
+    let halves_w = [1.0, -1.0].map(|sign| estimate(flux.mean + sign * flux.error, 1.4 * flux.error));
+    Convergence { stages: [4, 8, 16, 32, 64, 128, 245].map(stage).to_vec(), halves_w }
 }
 
 fn detectors() -> BTreeMap<String, DetectorResult> {
@@ -137,6 +165,7 @@ fn path(sequence: &str, class: &str, rays: u64, flux: Estimate, length: f64) -> 
         last_scatter: if class.starts_with("scatter") { "Barrel".into() } else { String::new() },
         optical_path_m: length,
         peak_w_m2: 3.1e4 * flux.mean,
+        cells: (0..256).map(|cell| 3.1e4 * flux.mean * noise(cell)).collect(),
     }
 }
 
@@ -218,6 +247,8 @@ fn results() -> Results {
         ]),
         parameters: BTreeMap::from([("hood.length".into(), "120 mm".into())]),
         finishes: vec!["generic black paint: generic, not measured".into()],
+        requirements: requirements(),
+        assumptions: vec![["Band".into(), "550 nm (vacuum)".into()], ["Left out".into(), "diffraction".into()]],
         importance: Some(GuidanceResult {
             used: true,
             gain: 12.6,
@@ -227,6 +258,53 @@ fn results() -> Results {
         path_grid: 16,
         paths: paths(),
         maps: maps(),
+        drawing: Some(drawing()),
+    }
+}
+
+fn requirements() -> Vec<RequirementResult> {
+    let stray = detectors()["fpa"].stray.clone();
+    let required = |limit: f64, value: Estimate| Required::of(limit, value, stray.rays, stray.upper_limit_w, 1.65);
+    let ratio = stray.to_signal.unwrap();
+    let one = |name: &str, quantity: &str, unit: &str, value: Estimate, limit: f64| RequirementResult {
+        name: name.into(),
+        detector: "fpa".into(),
+        quantity: quantity.into(),
+        unit: unit.into(),
+        value: Some(value),
+        confidence: 0.95,
+        required: required(limit, value),
+    };
+    vec![one("veil", "stray / signal", "", ratio, 1e-2), one("floor", "stray flux", "W", stray.flux_w, 1e-3)]
+}
+
+/// A square tube and a ray through it.
+fn drawing() -> Drawing {
+    let corners = [-1.0f32, 1.0].into_iter().flat_map(|z| {
+        [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]].map(|[x, y]: [f32; 2]| [0.05 * x, 0.05 * y, 0.05 * z])
+    });
+    let triangles = (0..4u32).flat_map(|i| {
+        let [a, b] = [i, (i + 1) % 4];
+        [[a, b, b + 4], [a, b + 4, a + 4]]
+    });
+    let absorb = [(); 2].map(|()| "Absorb".to_owned());
+    let part = DrawnPart { label: "Barrel".into(), triangles: 8, speculars: absorb, ..DrawnPart::default() };
+    let path = paths()[1].sequence.clone();
+    let way = Way {
+        source: "sun".into(),
+        class: "scatter 1".into(),
+        path: Some(["fpa".into(), path]),
+        points: vec![DVec3::new(0.0, 0.0, -0.08), DVec3::new(0.0, 0.015, 0.0), DVec3::new(0.0, 0.0, 0.05)],
+        flux: 1e-6,
+    };
+    Drawing {
+        radius: 0.06,
+        corners: corners.collect(),
+        triangles: triangles.collect(),
+        parts: vec![part],
+        all_triangles: 8,
+        ways: vec![way],
+        ..Drawing::default()
     }
 }
 
@@ -310,7 +388,7 @@ fn the_page_asks_for_nothing_and_names_everything() {
     let evil = Results { system: "<script>alert(1)</script> & Co".into(), ..results() };
     report::write(&dir, &evil, &run()).unwrap();
     let page = std::fs::read_to_string(dir.join("report.html")).unwrap();
-    assert!(!page.contains("<script") && page.contains("&lt;script&gt;alert(1)&lt;/script&gt; &amp; Co"));
+    assert!(!page.contains("<script>alert") && page.contains("&lt;script&gt;alert(1)&lt;/script&gt; &amp; Co"));
     let outside = ["http://", "https://", "src=", "@import", "url(h", "url(/"];
     assert!(outside.iter().all(|link| !page.contains(link)), "one file, no network");
     for word in [

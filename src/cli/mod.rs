@@ -19,6 +19,7 @@ pub mod schema;
 pub mod sensitivity;
 mod stop;
 mod table;
+pub mod view;
 
 use clap::{Args, Parser, Subcommand};
 use std::io::Write;
@@ -60,6 +61,8 @@ pub enum Verb {
     Glare(glare::GlareArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
+    /// Show a system in 3-D in a browser, with some of its rays, before it is traced
+    View(view::ViewArgs),
     /// Trace one packet of 1 W and print every event
     Ray(ray::RayArgs),
     /// Print and draw what a scatter model does: BSDF and TIS

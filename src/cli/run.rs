@@ -12,7 +12,11 @@ use straylight::error::Error;
 use straylight::report;
 use straylight::scene::Scene;
 use straylight::settings::{Settings, Until};
+use straylight::study::assumption::assumptions;
+use straylight::study::drawing::{draw, followed};
+use straylight::study::requirement::judge;
 use straylight::system::compile::Compiled;
+use straylight::tally::drawing::Drawing;
 use straylight::tally::results::{Results, RunInfo};
 use straylight::transport::{self, Counts, Progress, summary};
 
@@ -90,7 +94,15 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
     let seconds = start.elapsed().as_secs_f64();
     let warnings = compiled.warnings.iter().map(ToString::to_string).collect();
     let results = summary::results(&compiled.scene, &settings, &counts, 0, compiled.inputs, warnings);
-    let results = Results { parameters: compiled.parameters, finishes: compiled.finishes, ..results };
+    let scene = &compiled.scene;
+    let results = Results {
+        requirements: judge(&compiled.requirements, scene, &results),
+        assumptions: assumptions(scene, &settings, &compiled.finishes),
+        drawing: Some(Drawing { ways: followed(scene, &counts), ..draw(scene) }),
+        parameters: compiled.parameters,
+        finishes: compiled.finishes,
+        ..results
+    };
     let info = info(args, &settings, &counts, &results, pool.current_num_threads(), seconds);
     tell(&report::text(&results, &info));
     let written = report::write(&args.output, &results, &info)
@@ -133,7 +145,7 @@ fn info(
 }
 
 fn settings(args: &RunArgs, compiled: &Compiled) -> Result<Settings, Error> {
-    let mut settings = compiled.settings.clone();
+    let mut settings = Settings { ways: true, ..compiled.settings.clone() };
     settings.rays = args.rays.unwrap_or(settings.rays);
     settings.seed = args.seed.unwrap_or(settings.seed);
     if let Some(text) = &args.until {

@@ -31,10 +31,15 @@ pub fn variance_of_variance(values: impl ExactSizeIterator<Item = f64> + Clone) 
 
 /// Half-width of the central 95 % interval in units of the standard error for a mean of `n` batches (Student's t, n - 1 degrees).
 pub fn student95(n: u64) -> f64 {
+    student_quantile(n, 0.975)
+}
+
+/// Quantile of Student's t for a mean of `n` batches (n - 1 degrees): below it with probability `confidence`, 0.5..1.
+pub fn student_quantile(n: u64, confidence: f64) -> f64 {
     if n < 2 {
         return f64::INFINITY;
     }
-    StudentsT::new(0.0, 1.0, (n - 1) as f64).map_or(1.959_964, |t| t.inverse_cdf(0.975))
+    StudentsT::new(0.0, 1.0, (n - 1) as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(confidence))
 }
 
 /// Probability that chi-squared with `freedom` degrees exceeds `value`, 0..1.
@@ -73,6 +78,7 @@ mod tests {
     fn students_factor_matches_the_tables() {
         assert!((student95(20) - 2.093).abs() < 1e-3);
         assert!((student95(31) - 2.042).abs() < 1e-3);
+        assert!((student_quantile(64, 0.95) - 1.669).abs() < 1e-3 && (student_quantile(11, 0.99) - 2.764).abs() < 1e-3);
     }
 
     /// A uniform variable has the kurtosis 9/5, a single bright value the most: 1 - 1/n.

@@ -3,13 +3,11 @@
 //! Only sums of what the results hold. Where fluxes with errors are added, their errors may be correlated (one source ray feeds several rows),
 //! so the sum of the errors is given: by the triangle inequality the true error is never larger.
 
+use super::cause::is_meant;
 use super::measured::{Digits, grouped, measured};
 use super::picture::superscript;
 use super::share::shares;
 use crate::tally::results::{DetectorResult, Estimate, GuidanceResult, LedgerResult, PathResult, Results, RunInfo};
-
-/// The class that a designer meant; everything else is stray.
-pub const SIGNAL: &str = "signal";
 
 /// Lost flux above this part of the emitted flux is worth a warning.
 const LOST: f64 = 1e-6;
@@ -17,7 +15,7 @@ const LOST: f64 = 1e-6;
 /// Classes with their flux, W, and share in %: signal first, then by falling flux.
 pub fn classes(detector: &DetectorResult) -> Vec<(&str, Estimate, String)> {
     let mut rows: Vec<_> = detector.classes.iter().map(|(name, flux)| (name.as_str(), *flux)).collect();
-    rows.sort_by(|a, b| (b.0 == SIGNAL).cmp(&(a.0 == SIGNAL)).then(b.1.mean.total_cmp(&a.1.mean)));
+    rows.sort_by(|a, b| is_meant(b.0).cmp(&is_meant(a.0)).then(b.1.mean.total_cmp(&a.1.mean)));
     let fluxes: Vec<f64> = rows.iter().map(|row| row.1.mean).collect();
     let shares = shares(&fluxes, fluxes.iter().sum());
     rows.into_iter().zip(shares).map(|((name, flux), share)| (name, flux, share)).collect()
@@ -68,25 +66,9 @@ pub fn guidance(guidance: &GuidanceResult) -> String {
     format!("{taken} ({} patches{aimed}; figure of merit × {} in a trial)", guidance.patches, rounded(guidance.gain))
 }
 
-/// Flux of all classes but the signal, W; the error is an upper bound where there is signal, else that of the total.
-pub fn stray(detector: &DetectorResult) -> Estimate {
-    if !detector.classes.contains_key(SIGNAL) {
-        return detector.flux_w;
-    }
-    sum(detector.classes.iter().filter(|(name, _)| *name != SIGNAL).map(|(_, flux)| *flux))
-}
-
 /// Sum of the means, and of the errors as an upper bound.
 pub fn sum(parts: impl Iterator<Item = Estimate>) -> Estimate {
     parts.fold(Estimate::default(), |sum, part| Estimate { mean: sum.mean + part.mean, error: sum.error + part.error })
-}
-
-/// Stray over signal, dimensionless, with an upper bound of its error; `None` without signal.
-pub fn stray_to_signal(detector: &DetectorResult) -> Option<Estimate> {
-    let signal = detector.classes.get(SIGNAL).filter(|signal| signal.mean > 0.0)?;
-    let stray = stray(detector);
-    let ratio = stray.mean / signal.mean;
-    Some(Estimate { mean: ratio, error: (stray.error + ratio * signal.error) / signal.mean })
 }
 
 /// The strongest paths of one detector and the rest in one row; shares add up to 100 %.

@@ -7,15 +7,18 @@
 //! NAME.png          the map with axes, units and a colour bar
 //! paths.csv         which way the light came
 //! report.html       all of it on one self-contained page
+//! report.md         its first sheet as text
 //! ```
 //!
 //! Nothing here computes physics: it only rounds, draws and lays out what `tally` found.
 
 mod atomic;
+mod cause;
 pub mod compare;
 mod digest;
 mod fits;
 mod html;
+mod markdown;
 mod measured;
 mod name;
 mod npy;
@@ -30,6 +33,7 @@ mod text;
 mod write;
 
 pub use atomic::create;
+pub use html::view;
 pub use measured::{below, measured};
 pub use picture::{Curve, Division, Ink, Line, Panel, Ruler, Span, Stroke, chart, curves, polar};
 pub use text::text;

@@ -72,6 +72,7 @@ mod tests {
             last_scatter: String::new(),
             optical_path_m: 0.123,
             peak_w_m2: 4.0,
+            cells: Vec::new(),
         };
         let mut bytes = Vec::new();
         write(&mut bytes, &[path]).unwrap();

@@ -1,8 +1,9 @@
 //! The result for the terminal: plain lines, no colour, no width assumed.
 
+use super::cause::causes;
 use super::digest::{self, Verdict};
 use super::measured::{below, grouped, measured};
-use crate::tally::results::{DetectorResult, Estimate, Results, RunInfo};
+use crate::tally::results::{Estimate, RequirementResult, Results, RunInfo};
 use std::fmt::{self, Write};
 
 /// Paths listed per detector.
@@ -22,8 +23,9 @@ pub fn text(results: &Results, run: &RunInfo) -> String {
 
 fn whole(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     heading(out, results, run)?;
-    for (name, detector) in &results.detectors {
-        key_numbers(out, name, detector, run)?;
+    requirements(out, results)?;
+    for name in results.detectors.keys() {
+        key_numbers(out, results, run, name)?;
         paths(out, results, name)?;
     }
     ledger(out, results)?;
@@ -57,7 +59,23 @@ fn heading(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     writeln!(out, "errors are one standard error of the mean")
 }
 
-fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult, run: &RunInfo) -> fmt::Result {
+/// What is required, and whether it holds.
+fn requirements(out: &mut String, results: &Results) -> fmt::Result {
+    for row in &results.requirements {
+        let RequirementResult { name, quantity, detector, unit, required, .. } = row;
+        let found = row.value.map_or("no signal".into(), estimate);
+        let (limit, margin) = (measured(required.limit, 0.0), measured(digest::rounded(required.margin), 0.0));
+        writeln!(
+            out,
+            "{}: {name}: {quantity} on {detector} {found} {unit}, limit {limit} {unit}, margin {margin} x",
+            required.verdict
+        )?;
+    }
+    Ok(())
+}
+
+fn key_numbers(out: &mut String, results: &Results, run: &RunInfo, name: &str) -> fmt::Result {
+    let Some(detector) = results.detectors.get(name) else { return Ok(()) };
     let flux = match detector.upper_limit_w {
         Some(limit) => below(limit),
         None => estimate(detector.flux_w),
@@ -75,8 +93,12 @@ fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult, run: &Ru
         "  brightest bin: {peak} {} at row {row}, column {column} (a maximum is biased upward)",
         detector.unit
     )?;
-    if let Some(ratio) = digest::stray_to_signal(detector) {
-        writeln!(out, "  stray / signal: {} (error: upper bound)", estimate(ratio))?;
+    if let Some(ratio) = detector.stray.to_signal {
+        writeln!(out, "  stray / signal: {}", estimate(ratio))?;
+    }
+    if let Some(cause) = causes(results, name).first() {
+        let share = measured(100.0 * cause.share.mean, 100.0 * cause.share.error);
+        writeln!(out, "  {share} % of the stray light is {}", cause.text)?;
     }
     if let Some(merit) = digest::merit(detector, run) {
         writeln!(out, "  {merit}")?;

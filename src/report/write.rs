@@ -1,6 +1,6 @@
 //! Everything a run leaves in its folder.
 
-use super::{atomic, fits, html, name, npy, paths, picture, summary};
+use super::{atomic, fits, html, markdown, name, npy, paths, picture, summary};
 use crate::tally::results::{MapResult, Results, RunInfo};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -27,6 +27,7 @@ pub fn write(dir: &Path, results: &Results, run: &RunInfo) -> Result<Vec<PathBuf
     }
     folder.file("paths.csv", |out| paths::write(out, &results.paths))?;
     folder.file("report.html", |out| out.write_all(html::page(results, run).as_bytes()))?;
+    folder.file("report.md", |out| out.write_all(markdown::markdown(results, run).as_bytes()))?;
     folder.file("summary.json", |out| summary::write(out, results, run))?;
     atomic::settle(dir);
     Ok(folder.written)

@@ -115,6 +115,11 @@ impl Surface {
         self.specular.is_some()
     }
 
+    /// True if there are particles on it.
+    pub fn is_dusty(&self) -> bool {
+        self.dust.is_some()
+    }
+
     /// True for a bare interface without scatter: it yields to a declared finish where faces lie on each other.
     pub fn is_plain(&self) -> bool {
         self.lobes.is_empty() && self.specular.as_ref().is_some_and(|c| c.bare())

@@ -80,6 +80,8 @@ mod tests {
         fields::<Mask>();
         options::<Angles>();
         fields::<Detector>();
+        fields::<Requirement>();
+        options::<Limit>();
         fields::<Run>();
         fields::<Roulette>();
         fields::<Bracket>();

@@ -63,6 +63,8 @@ pub struct Layout {
     first_row: usize,
     /// Whether what happened on the way is counted.
     events: bool,
+    /// Whether the bins of stray light are counted apart.
+    apart: bool,
 }
 
 const CUTS: usize = Cut::ALL.len();
@@ -95,7 +97,7 @@ impl Layout {
                 first
             })
             .collect();
-        Layout { parts, media, sources, detectors, bins, rows, first_row: next, events: false }
+        Layout { parts, media, sources, detectors, bins, rows, first_row: next, events: false, apart: false }
     }
 
     /// The same with slots for what happened on the way of stray light.
@@ -103,10 +105,25 @@ impl Layout {
         Layout { events: true, ..self }
     }
 
+    /// The same with bins for stray light alone.
+    pub fn with_stray_bins(self) -> Layout {
+        Layout { apart: true, ..self }
+    }
+
     /// Number of slots.
     pub fn len(&self) -> usize {
+        self.first_stray_bin(if self.apart { self.bins.len() } else { 0 })
+    }
+
+    /// First of the bins for stray light alone of a detector.
+    fn first_stray_bin(&self, detector: usize) -> usize {
         let events = if self.events { self.bins.len() * self.events_each() } else { 0 };
-        self.first_row + self.rows * ROW + events
+        self.first_row + self.rows * ROW + events + self.bins[..detector].iter().sum::<usize>()
+    }
+
+    /// Stray light in a bin; `None` where it is not counted apart.
+    pub fn stray_bin(&self, detector: usize, bin: usize) -> Option<usize> {
+        self.apart.then(|| self.first_stray_bin(detector) + bin)
     }
 
     /// Slots of the events of one detector.
@@ -227,7 +244,7 @@ mod tests {
 
     #[test]
     fn no_two_numbers_share_a_slot() {
-        let layout = Layout::new(3, 2, 4, vec![4, 5], 6).with_events();
+        let layout = Layout::new(3, 2, 4, vec![4, 5], 6).with_events().with_stray_bins();
         let mut slots: Vec<usize> = (0..TOTALS).collect();
         slots.extend(layout.cuts().chain(layout.losses()).chain(layout.absorbers()));
         for d in 0..2 {
@@ -236,6 +253,7 @@ mod tests {
             slots.extend((0..4).map(|s| layout.source(d, s)));
             slots.extend((0..4 * Class::COUNT).map(|i| layout.source_class(d, i / Class::COUNT, i % Class::COUNT)));
             slots.extend((0..layout.bins(d)).map(|b| layout.bin(d, b)));
+            slots.extend((0..layout.bins(d)).filter_map(|b| layout.stray_bin(d, b)));
             slots.extend(layout.stray(d).into_iter().flat_map(|first| [first, first + 1]));
             for event in [Event::Reflect, Event::Transmit, Event::Scatter, Event::Bulk] {
                 slots.extend((0..3).filter_map(|part| layout.event(d, part, event)));

@@ -2,6 +2,8 @@
 //!
 //! Everything here is the same bits for the same system, seed and rays, whatever the threads; times and hosts are kept apart.
 
+use super::drawing::Drawing;
+use super::required::Required;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -67,6 +69,10 @@ pub struct DetectorResult {
     pub classes: BTreeMap<String, Estimate>,
     /// Flux by source, W.
     pub sources: BTreeMap<String, Estimate>,
+    /// All light but what is meant to arrive.
+    pub stray: StrayResult,
+    /// How the flux became known.
+    pub convergence: Convergence,
     /// Fraction of bins with fewer than 30 contributing source rays among those with any, 0..1.
     pub unresolved: f64,
 }
@@ -78,6 +84,52 @@ pub struct LargestResult {
     pub share: f64,
     /// Its path, as in the table of paths.
     pub sequence: String,
+}
+
+/// Light on a detector apart from what is meant to arrive: the class "signal", or "direct" where nothing makes an image.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StrayResult {
+    pub flux_w: Estimate,
+    /// What is meant to arrive, W; null if none of it did.
+    pub signal_w: Option<Estimate>,
+    /// Stray over signal, dimensionless; the error is that of the ratio, from batches. Null without signal.
+    pub to_signal: Option<Estimate>,
+    /// Source rays that brought stray light, at least: those of the class that has most.
+    pub rays: u64,
+    /// 3 x the largest flux that one source ray carries / N, W: what may be hidden where nothing arrived.
+    pub upper_limit_w: f64,
+}
+
+/// The flux on a detector as the run went on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Convergence {
+    /// After 4, 8, 16, ... batches, and after all.
+    pub stages: Vec<Stage>,
+    /// Of the first and of the second half of the batches, W: independent of each other.
+    pub halves_w: [Estimate; 2],
+}
+
+/// What was known after some batches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Stage {
+    pub batches: u64,
+    pub flux_w: Estimate,
+}
+
+/// What is required of the stray light on a detector, and whether it holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementResult {
+    pub name: String,
+    pub detector: String,
+    /// "stray / signal", "stray flux" or "stray irradiance".
+    pub quantity: String,
+    /// "", "W" or "W/m2".
+    pub unit: String,
+    /// Null without signal, where the ratio to it is asked for.
+    pub value: Option<Estimate>,
+    /// One-sided probability with which the verdict holds, 0.5..1.
+    pub confidence: f64,
+    pub required: Required,
 }
 
 /// What a run learned of importance before it began.
@@ -115,6 +167,9 @@ pub struct PathResult {
     pub optical_path_m: f64,
     /// Largest irradiance in a cell of the coarse grid (see `Results::path_grid`), W/m2.
     pub peak_w_m2: f64,
+    /// Irradiance in every cell of that grid, W/m2, row by row; empty if the path has none of its own.
+    #[serde(skip)]
+    pub cells: Vec<f64>,
 }
 
 /// One detector's map. Bins are row-major: index = row * columns + column.
@@ -137,6 +192,8 @@ pub struct MapResult {
     pub upper: Vec<f64>,
     /// Bin sizes, m2 or sr.
     pub extent: Vec<f64>,
+    /// Stray light alone, mean and error per bin, in `unit`; `None` where there is no other light to tell it from.
+    pub stray: Option<[Vec<f64>; 2]>,
     /// World position (m) of the grid's origin corner and unit vectors of columns and rows: for captions.
     pub origin: [f64; 3],
     pub column_direction: [f64; 3],
@@ -172,6 +229,10 @@ pub struct Results {
     pub parameters: BTreeMap<String, String>,
     /// What is assumed of the finishes of the built-in library: source, kind and wavelengths, a line each.
     pub finishes: Vec<String>,
+    /// What is required, and whether it holds.
+    pub requirements: Vec<RequirementResult>,
+    /// What the run assumes and leaves out, a line each under its heading.
+    pub assumptions: Vec<[String; 2]>,
     /// What was learned of importance before the run; null if nothing was.
     pub importance: Option<GuidanceResult>,
     /// Cells along each side of the grid on which a path's peak is given.
@@ -180,6 +241,9 @@ pub struct Results {
     pub paths: Vec<PathResult>,
     #[serde(skip)]
     pub maps: Vec<MapResult>,
+    /// What the system looks like, if pictures of it are wanted.
+    #[serde(skip)]
+    pub drawing: Option<Drawing>,
 }
 
 /// How the run went: differs from machine to machine.

@@ -103,8 +103,9 @@ impl<'a, const V: usize> Book<'a, V> {
         self.live.add(self.layout.source(detector, source), flux);
         self.live.add(self.layout.source_class(detector, source, class), flux);
         self.live.add(self.layout.bin(detector, bin), flux);
-        if let Some(stray) = self.layout.stray(detector).filter(|_| ancestry.class() != scene.image()) {
-            self.events(detector, stray, ancestry, flux);
+        if ancestry.class() != scene.image() {
+            self.layout.stray_bin(detector, bin).into_iter().for_each(|slot| self.live.add(slot, flux));
+            self.layout.stray(detector).into_iter().for_each(|slot| self.events(detector, slot, ancestry, flux));
         }
         match rows.find(detector, ancestry.key) {
             None => self.live.add(self.layout.other(detector), flux),

@@ -13,8 +13,10 @@ pub mod summary;
 mod trial;
 pub mod walk;
 pub mod watch;
+mod ways;
 
 use crate::math::rng::mix;
+use crate::packet::Class;
 use crate::scene::Scene;
 use crate::settings::{Booking, Guidance, Settings, Trace};
 use crate::tally::results::GuidanceResult;
@@ -30,6 +32,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use trial::trial;
 use walk::{Quota, Walk, quotas};
 use watch::Unwatched;
+pub use ways::Followed;
 
 /// Batches handed to the threads at a time: progress is reported, interruptions are seen and sums are folded in between.
 const CHUNK: u64 = 64;
@@ -42,6 +45,10 @@ pub struct Counts<const V: usize> {
     pub sums: Sums<V>,
     /// Flux on every detector in every batch, W.
     pub fluxes: Vec<Vec<[f64; V]>>,
+    /// Of it, stray light and what is meant to arrive, W.
+    pub parted: Vec<Vec<[[f64; V]; 2]>>,
+    /// Some of the ways that the light took, if they were asked for.
+    pub ways: Vec<Followed>,
     pub batch_rays: u64,
     /// The largest single contributions.
     pub largest: Largest<V>,
@@ -111,6 +118,7 @@ pub fn batchwise<const V: usize>(
     let mut fold = Fold::default();
     let mut fluxes = vec![Vec::new(); scene.detectors.len()];
     let mut largest = Largest::new(scene.detectors.len());
+    let mut parted = vec![Vec::new(); scene.detectors.len()];
     let (mut done, mut segments) = (0, 0);
     let stages = stages(settings);
     'stages: for &stage in &stages {
@@ -127,6 +135,8 @@ pub fn batchwise<const V: usize>(
                 batch(&layout, &rows, &sums);
                 fluxes.iter_mut().enumerate().for_each(|(d, all)| all.push(sums.values(layout.detector(d))));
                 largest.merge(batch_largest);
+                let image = scene.image();
+                parted.iter_mut().enumerate().for_each(|(d, all)| all.push(stray_and_image(&layout, d, image, &sums)));
                 fold.push(sums);
                 segments += flights;
                 done += 1;
@@ -144,7 +154,23 @@ pub fn batchwise<const V: usize>(
         }
     }
     let interrupted = stop.load(Ordering::Relaxed) && done < settings.batches();
-    Counts { layout, rows, sums: fold.total(), fluxes, largest, batch_rays, segments, interrupted, guidance }
+    let sums = fold.total();
+    let ways = if settings.ways && !interrupted { ways::follow(&plan, &layout, &rows, &sums) } else { Vec::new() };
+    Counts { layout, rows, sums, fluxes, parted, ways, batch_rays, largest, segments, interrupted, guidance }
+}
+
+/// Flux on a detector, W: of all classes but that of what is meant to arrive, and of that class.
+pub fn stray_and_image<const V: usize>(
+    layout: &Layout,
+    detector: usize,
+    image: Class,
+    batch: &Sums<V>,
+) -> [[f64; V]; 2] {
+    // A sum of classes: all light less the image would be rounding where stray light is faint.
+    let stray = (0..Class::COUNT).filter(|class| *class != image.index());
+    let stray = stray.map(|class| batch.values(layout.class(detector, class)));
+    let sum = stray.fold([0.0; V], |sum, part| std::array::from_fn(|lane| sum[lane] + part[lane]));
+    [sum, batch.values(layout.class(detector, image.index()))]
 }
 
 /// Runs of fewer source rays learn nothing: it would take longer than they do.

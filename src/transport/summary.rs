@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
 use crate::tally::results::*;
-use crate::tally::{Layout, Sums};
+use crate::tally::{Layout, Sums, series};
 use std::collections::BTreeMap;
 
 /// Bins fed by fewer source rays than this are not resolved: their error bar is itself a guess.
@@ -70,10 +70,13 @@ pub fn results<const V: usize>(
         inputs,
         parameters: BTreeMap::new(),
         finishes: Vec::new(),
+        requirements: Vec::new(),
+        assumptions: Vec::new(),
         importance: counts.guidance.clone(),
         path_grid: PATH_GRID,
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
         maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),
+        drawing: None,
     }
 }
 
@@ -204,7 +207,33 @@ impl<const V: usize> Teller<'_, V> {
             largest: self.largest(d),
             classes,
             sources,
+            stray: self.stray(d, flux_w),
+            convergence: self.convergence(d),
             unresolved,
+        }
+    }
+
+    /// Stray light, with the errors of sum and ratio from the batches.
+    fn stray(&self, d: usize, flux_w: Estimate) -> StrayResult {
+        let series = |part: usize| self.counts.parted[d].iter().map(|batch| batch[part][self.lane]).collect::<Vec<_>>();
+        let [stray, signal] = [series(0), series(1)];
+        let meant = self.scene.image().index();
+        let classes = (0..Class::COUNT).filter(|class| *class != meant);
+        let rays = classes.map(|class| self.sums().rays(self.counts.layout.class(d, class))).max().unwrap_or(0);
+        let signal_w = Some(series::mean(&signal)).filter(|signal| signal.mean > 0.0);
+        // The same number to the last digit where there is no other light.
+        let flux_w = if signal_w.is_none() { flux_w } else { series::mean(&stray) };
+        StrayResult { flux_w, signal_w, to_signal: series::ratio(&signal, &stray), rays, upper_limit_w: self.upper() }
+    }
+
+    fn convergence(&self, d: usize) -> Convergence {
+        let fluxes: Vec<f64> = self.counts.fluxes[d].iter().map(|flux| flux[self.lane]).collect();
+        let all = fluxes.len();
+        let doublings = (2..).map(|k| 1 << k).take_while(|batches| *batches < all);
+        let known = |batches: usize| Stage { batches: batches as u64, flux_w: series::mean(&fluxes[..batches]) };
+        Convergence {
+            stages: doublings.chain([all]).filter(|batches| *batches > 1).map(known).collect(),
+            halves_w: [&fluxes[..all / 2], &fluxes[all / 2..]].map(series::mean),
         }
     }
 
@@ -249,6 +278,7 @@ impl<const V: usize> Teller<'_, V> {
             origin: (grid.origin() + self.scene.shift).to_array(),
             column_direction: grid.frame().x.to_array(),
             row_direction: grid.frame().y.to_array(),
+            stray: self.stray_map(d),
             side: detector.side.label(),
         };
         for bin in 0..bins {
@@ -263,6 +293,18 @@ impl<const V: usize> Teller<'_, V> {
             }
         }
         map
+    }
+
+    /// Mean and error of stray light alone in every bin, where it is counted apart.
+    fn stray_map(&self, d: usize) -> Option<[Vec<f64>; 2]> {
+        let grid = &self.scene.detectors[d].grid;
+        let value = |bin: usize| {
+            let estimate = self.estimate(self.counts.layout.stray_bin(d, bin)?);
+            let extent = grid.extent(bin);
+            Some(if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] })
+        };
+        let bins: Option<Vec<[f64; 2]>> = (0..self.counts.layout.bins(d)).map(value).collect();
+        bins.map(|bins| [0, 1].map(|k| bins.iter().map(|bin| bin[k]).collect()))
     }
 
     /// Rows of one detector, brightest first, and what had no row.
@@ -288,6 +330,7 @@ impl<const V: usize> Teller<'_, V> {
                 last_scatter: String::new(),
                 optical_path_m: 0.0,
                 peak_w_m2: 0.0,
+                cells: Vec::new(),
             });
         }
         paths
@@ -302,8 +345,8 @@ impl<const V: usize> Teller<'_, V> {
             return None;
         }
         let rays = self.sums().rays(layout.row(index));
-        let cells = layout.row_cells(index).zip(areas).filter(|(_, area)| **area > 0.0);
-        let peak = cells.map(|(slot, area)| self.estimate(slot).mean / area).fold(0.0, f64::max);
+        let density = |(slot, area): (usize, &f64)| if *area > 0.0 { self.estimate(slot).mean / area } else { 0.0 };
+        let cells: Vec<f64> = layout.row_cells(index).zip(areas).map(density).collect();
         let source = self.scene.sources[row.source].label.clone();
         Some(PathResult {
             detector: self.scene.detectors[row.detector].label.clone(),
@@ -317,7 +360,8 @@ impl<const V: usize> Teller<'_, V> {
             scatter_order: row.scatters as u32,
             last_scatter: row.last_scatter.map_or(String::new(), |step| label(self.scene, &step).into()),
             optical_path_m: self.estimate(layout.row_path(index)).mean / flux_w.mean,
-            peak_w_m2: peak,
+            peak_w_m2: cells.iter().copied().fold(0.0, f64::max),
+            cells,
         })
     }
 

@@ -1,5 +1,6 @@
 //! A look over the tracer's shoulder: for `straylight ray` and for tests. A run watches nothing, at no cost.
 
+use crate::detector::Arrival;
 use crate::geometry::{Left, Ray};
 use crate::packet::Ancestry;
 use glam::DVec3;
@@ -43,8 +44,8 @@ pub trait Watch {
     fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
     /// A packet of this flux (W) is scattered at the origin of the ray on which it came, in a medium. Called before its way is drawn.
     fn scattered(&mut self, _ray: &Ray, _medium: u16, _flux: f64) {}
-    /// A packet of this flux (W) and direction arrives at a detector. Called before what is there acts on it.
-    fn arrives(&mut self, _detector: usize, _direction: DVec3, _flux: f64) {}
+    /// A packet of this flux (W) arrives at a detector. Called before what is there acts on it.
+    fn arrives(&mut self, _detector: usize, _arrival: &Arrival, _flux: f64) {}
     /// A packet left the scene.
     fn escaped(&mut self, _ray: Ray, _flux: f64) {}
 }

@@ -6,6 +6,7 @@
 //! RAYS      contributing source rays     64-bit integers
 //! UPPER     upper limit where no ray came, else 0
 //! EXTENT    bin size, m2 or sr: the sum of mean x extent is the flux
+//! STRAY     mean of stray light alone, and STRAY_ERROR its error; where there are optics
 //! ```
 //!
 //! Lengths are in mm, angles in deg, at bin centres. No date is written: the same results are the same bytes.
@@ -22,7 +23,7 @@ use std::io::{self, Write};
 /// Length of a FITS record, bytes: headers and data are padded to it.
 const RECORD: usize = 2880;
 
-/// Writes the primary map and its four extensions.
+/// Writes the primary map and its extensions.
 pub fn write(out: &mut impl Write, map: &MapResult, results: &Results, run: &RunInfo) -> io::Result<()> {
     let size = if map.unit.ends_with("sr") { "sr" } else { "m2" };
     let mut primary = Header::primary(-64, map.shape);
@@ -36,6 +37,9 @@ pub fn write(out: &mut impl Write, map: &MapResult, results: &Results, run: &Run
             plane(out, extension("RAYS", "", 64, map), Cells::Count(&map.rays))?;
         }
         plane(out, extension(name, unit, -64, map), Cells::Real(values))?;
+    }
+    for (name, values) in ["STRAY", "STRAY_ERROR"].into_iter().zip(map.stray.iter().flatten()) {
+        plane(out, extension(name, map.unit, -64, map), Cells::Real(values))?;
     }
     Ok(())
 }

@@ -71,6 +71,7 @@ fn map(rows: usize, columns: usize) -> MapResult {
         origin: [0.0, 0.0, 0.1],
         column_direction: [1.0, 0.0, 0.0],
         row_direction: [0.0, 1.0, 0.0],
+        stray: None,
         side: "front",
     }
 }
@@ -92,11 +93,14 @@ fn file(map: &MapResult, system: &str) -> Vec<u8> {
         trusted: true,
         parameters: Default::default(),
         finishes: Vec::new(),
+        requirements: Vec::new(),
+        assumptions: Vec::new(),
         importance: None,
         inputs: Default::default(),
         path_grid: 16,
         paths: Vec::new(),
         maps: Vec::new(),
+        drawing: None,
     };
     let run = RunInfo {
         version: "0.1.0".into(),

@@ -66,7 +66,8 @@ pub fn triple(vector: [f64; 3], factor: f64) -> String {
 
 /// Colour of a class of light, the same wherever it appears.
 pub fn tone(class: &str) -> &'static str {
-    let order = class.rsplit(' ').next().and_then(|order| order.parse::<usize>().ok()).unwrap_or(1);
+    let order =
+        class.rsplit(' ').next().and_then(|order| order.trim_end_matches('+').parse::<usize>().ok()).unwrap_or(1);
     let shade = |shades: [&'static str; 3]| shades[order.clamp(1, 3) - 1];
     match class.split(' ').next().unwrap_or_default() {
         "signal" => "#1f5c7a",

@@ -1,20 +1,39 @@
 //! The first screen: what was found, and whether it can be trusted.
 
 use super::number::{estimate, limit, tone};
-use crate::report::digest::{self, SIGNAL, Verdict};
+use super::sheet;
+use crate::report::cause::is_meant;
+use crate::report::digest::{self, Verdict};
 use crate::report::measured::grouped;
 use crate::tally::results::{DetectorResult, Results, RunInfo};
 use maud::{Markup, html};
 
+/// Part of the light from which a class is in the legend; all are in the table of its detector.
+const LISTED: f64 = 1e-4;
+
 pub fn overview(results: &Results, run: &RunInfo) -> Markup {
+    let subject = sheet::subject(results);
+    let found = subject.and_then(|name| results.detectors.get(name));
+    let cards = || results.detectors.iter().enumerate().filter(|(_, (name, _))| Some(name.as_str()) != subject);
     html! {
-        header {
-            p.overline { "Stray-light report" }
-            h1 { (results.system) }
-            (facts(results, run))
-            @if run.interrupted { p.interrupted { "Interrupted: this report holds the batches that were finished." } }
+        section.sheet {
+            header {
+                p.overline { "Stray-light report" }
+                h1 { (results.system) }
+                (facts(results, run))
+                @if run.interrupted { p.interrupted { "Interrupted: this report holds the batches that were finished." } }
+            }
+            (sheet::requirements(results))
+            @if let Some((name, found)) = subject.zip(found) {
+                (sheet::sentence(results, name))
+                (card(results.detectors.keys().position(|other| other == name).unwrap_or(0), name, found))
+                (sheet::pictures(results, name))
+                (sheet::strongest(results, name))
+            }
+            (sheet::assumed(results))
+            (sheet::health(results))
         }
-        @for (index, (name, detector)) in results.detectors.iter().enumerate() { (card(index, name, detector)) }
+        @for (index, (name, detector)) in cards() { (card(index, name, detector)) }
         (trust(results))
     }
 }
@@ -65,13 +84,13 @@ fn card(index: usize, name: &str, detector: &DetectorResult) -> Markup {
 
 /// Stray against signal, in one line.
 fn ratio(detector: &DetectorResult) -> Markup {
-    let stray = digest::stray(detector);
+    let stray = &detector.stray;
     html! {
         @if detector.upper_limit_w.is_none() {
             dl.ratio {
-                @if let Some(signal) = detector.classes.get(SIGNAL) { div { dt { "Signal" } dd { (estimate(*signal, "W")) } } }
-                div { dt { "Stray" } dd { (estimate(stray, "W")) } }
-                @if let Some(ratio) = digest::stray_to_signal(detector) {
+                @if let Some(signal) = stray.signal_w { div { dt { "Signal" } dd { (estimate(signal, "W")) } } }
+                div { dt { "Stray" } dd { (estimate(stray.flux_w, "W")) } }
+                @if let Some(ratio) = stray.to_signal {
                     div.strong { dt { "Stray / signal" } dd { (estimate(ratio, "")) } }
                 }
             }
@@ -82,7 +101,7 @@ fn ratio(detector: &DetectorResult) -> Markup {
 /// Signal and stray as one bar; below it stray light alone, drawn to full width, by class.
 fn bar(detector: &DetectorResult) -> Markup {
     let classes = digest::classes(detector);
-    let stray = digest::stray(detector).mean;
+    let stray = detector.stray.flux_w.mean;
     let total: f64 = classes.iter().map(|class| class.1.mean.max(0.0)).sum();
     let enlarged = total > 0.0 && stray > 0.0 && stray < 0.5 * total;
     html! {
@@ -91,12 +110,12 @@ fn bar(detector: &DetectorResult) -> Markup {
                 (strip(&classes, total, |_| true))
                 @if enlarged {
                     (funnel(100.0 * (1.0 - stray / total)))
-                    (strip(&classes, stray, |class| class != SIGNAL))
+                    (strip(&classes, stray, |class| !is_meant(class)))
                 }
                 figcaption {
                     @if enlarged { p.note { "Lower strip: stray light alone, × " (crate::report::measured::measured(digest::rounded(total / stray), 0.0)) "." } }
                     ul.legend {
-                        @for (class, _, share) in &classes {
+                        @for (class, _, share) in classes.iter().filter(|class| class.1.mean >= LISTED * total) {
                             li { span.swatch style=(format!("background:{}", tone(class))) {} (class) " " span.share { (share) " %" } }
                         }
                     }
@@ -129,16 +148,10 @@ fn funnel(from: f64) -> Markup {
 
 /// What holds for the whole run.
 fn trust(results: &Results) -> Markup {
-    let warnings = results.warnings.len();
     html! {
         div.trust {
-            (said(&digest::closure(&results.ledger_w)))
-            (said(&digest::losses(&results.ledger_w)))
-            @if warnings > 0 {
-                p.verdict.bad { a href="#warnings" { (warnings) @if warnings == 1 { " warning" } @else { " warnings" } } " to read." }
-            }
             @if let Some(guidance) = &results.importance { p.verdict.plain { "Light was " (digest::guidance(guidance)) "." } }
-            p.verdict.plain { "Errors are one standard error of the mean over " (results.batches) " batches; for sums of classes and their ratios, an upper bound." }
+            p.verdict.plain { "Errors are one standard error of the mean over " (results.batches) " batches." }
         }
     }
 }

@@ -6,21 +6,27 @@ use crate::report::measured::grouped;
 use crate::tally::results::{PathResult, Results};
 use maud::{Markup, html};
 
-/// Rows per detector; all are in paths.csv.
-const ROWS: usize = 25;
+/// Rows per detector, and of them those that are shown at first; all are in paths.csv.
+const ROWS: usize = 200;
+const SHOWN: usize = 25;
 
 pub fn table(results: &Results, detector: &str) -> Markup {
     let strongest = digest::strongest(results, detector, ROWS);
     html! {
         @if !strongest.rows.is_empty() {
             h3 { "Strongest paths" }
-            table.paths {
+            div.tools {
+                input type="search" data-filter="" placeholder="filter: Barrel, ghost, Lens_2:R" aria-label="Filter paths";
+                @if strongest.rows.len() > SHOWN { button type="button" data-more="" { "show all " (strongest.rows.len()) } }
+                span.note data-found="" role="status" {}
+            }
+            table.paths data-sortable="" {
                 thead { tr {
-                    th {} th { "Class" } th.right { "Flux" } th.right { "Share" } th.right { "Rays" } th.right { "Optical path" }
-                    th.right { "Peak" }
+                    th {} (head("class", "Class", false)) (head("flux", "Flux", true)) th.right { "Share" } (head("rays", "Rays", true))
+                    (head("length", "Optical path", true)) (head("peak", "Peak", true))
                 } }
                 @for (index, (path, share)) in strongest.rows.iter().enumerate() { (row(index + 1, path, share)) }
-                tbody {
+                tbody.last {
                     @if let Some((flux, share, sequences)) = &strongest.other {
                         tr { td {} td { "other" } td.right { (estimate(*flux, "W")) } td.right { (share) " %" } td colspan="3" {} }
                         tr.sequence { td {} td colspan="6" {
@@ -38,13 +44,19 @@ pub fn table(results: &Results, detector: &str) -> Markup {
     }
 }
 
+/// A column that can be sorted by.
+fn head(key: &str, title: &str, right: bool) -> Markup {
+    html! { th.right[right] { button type="button" data-sort=(key) { (title) } } }
+}
+
 fn total(results: &Results, detector: &str) -> Markup {
     html! { @if let Some(detector) = results.detectors.get(detector) { (estimate(detector.flux_w, "W")) } }
 }
 
 fn row(rank: usize, path: &PathResult, share: &str) -> Markup {
     html! {
-        tbody {
+        tbody.more[rank > SHOWN] tabindex="0" data-detector=(path.detector) data-path=(path.sequence) data-class=(path.class)
+            data-flux=(path.flux_w.mean) data-rays=(path.rays) data-length=(path.optical_path_m) data-peak=(path.peak_w_m2) {
             tr {
                 td.rank { (rank) }
                 td { span.swatch style=(format!("background:{}", tone(&path.class))) {} (path.class) }

@@ -1,16 +1,18 @@
 //! One detector: its map, its classes, its paths.
 
+use super::convergence::convergence;
 use super::figure::{self, Figure};
 use super::ledger::gauge;
+use super::light::is_read_out;
 use super::number::{estimate, limit, plain, power, ten, tone, triple};
 use super::paths;
 use crate::report::digest;
 use crate::report::measured::grouped;
 use crate::report::picture::{Field, Palette, Scale};
-use crate::tally::results::{DetectorResult, MapKind, MapResult, Results};
+use crate::tally::results::{DetectorResult, MapKind, MapResult, Results, RunInfo};
 use maud::{Markup, html};
 
-pub fn detector(results: &Results, index: usize, name: &str) -> Markup {
+pub fn detector(results: &Results, run: &RunInfo, index: usize, name: &str) -> Markup {
     let map = results.maps.iter().find(|map| map.detector == name);
     html! {
         section.detector id=(format!("detector-{index}")) {
@@ -23,6 +25,7 @@ pub fn detector(results: &Results, index: usize, name: &str) -> Markup {
                 }
             }
             (paths::table(results, name))
+            @if let Some(detector) = results.detectors.get(name) { (convergence(results, run, detector)) }
         }
     }
 }
@@ -33,12 +36,20 @@ fn picture(map: &MapResult, detector: &DetectorResult) -> Markup {
     let title = format!("Map of {}", map.detector);
     html! {
         figure.map {
-            div.picture { (figure::figure(&Figure {
+            div.picture data-map=[is_read_out(map).then_some(&map.detector)] { (figure::figure(&Figure {
                 field: &field, scale: &scale, palette: Palette::Light, unit: map.unit, title: &title, longest: 480.0,
             })) }
             figcaption { (caption(map, &field, &scale, detector)) }
         }
     }
+}
+
+/// The same map of stray light alone, and whether it is told apart.
+pub fn stray_map(map: &MapResult) -> (MapResult, bool) {
+    let Some([mean, error]) = map.stray.clone() else { return (map.clone(), false) };
+    // Where no stray light came, other light may have.
+    let rays = map.rays.iter().zip(&mean).map(|(rays, mean)| if *mean > 0.0 { *rays } else { 0 }).collect();
+    (MapResult { mean, error, rays, ..map.clone() }, true)
 }
 
 /// A small map of the error of each bin.

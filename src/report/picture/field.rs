@@ -200,6 +200,7 @@ mod tests {
             origin: [0.0; 3],
             column_direction: [1.0, 0.0, 0.0],
             row_direction: [0.0, 1.0, 0.0],
+            stray: None,
             side: "front",
         }
     }

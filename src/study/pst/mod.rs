@@ -10,12 +10,11 @@
 //! Source: E. Fest, Stray Light Analysis and Control (SPIE, 2013), sec. 1.4.
 
 mod kept;
-mod mask;
 mod rounds;
 mod sky;
 
+pub use crate::tally::required::{Required, Verdict};
 pub use kept::{Kept, fingerprint};
-pub use mask::{Required, Verdict};
 pub use rounds::{Plan, Round, Seen, trace};
 pub use sky::Sky;
 
@@ -101,6 +100,9 @@ pub struct Sweeps {
     pub parameters: BTreeMap<String, String>,
 }
 
+/// Student's t, one-sided 95 %, of 63 degrees of freedom: a round has 64 batches at least.
+const ONE_SIDED: f64 = 1.669;
+
 /// Share of the PST in one batch above which its error is a guess.
 const BRIGHTEST: f64 = 0.25;
 
@@ -118,7 +120,7 @@ impl Curve {
         let mut warnings: Vec<String> = rounds.iter().flat_map(|round| round.warnings.clone()).collect();
         let several = sweep.azimuths.len() > 1;
         warnings.extend(points.iter().filter_map(|point| caution(point, several)));
-        let verdict = sweep.mask.as_ref().and_then(|_| Verdict::of_all(&points));
+        let verdict = sweep.mask.as_ref().and_then(|_| worst(&points));
         let sky = Sky::of(&cuts(&points));
         Curve {
             sky,
@@ -143,6 +145,11 @@ impl Curve {
     pub fn cuts(&self) -> Vec<&[Point]> {
         cuts(&self.points)
     }
+}
+
+/// Of all points that something is required of: the worst verdict; `None` if there are none.
+fn worst(points: &[Point]) -> Option<Verdict> {
+    points.iter().filter_map(|point| point.required.map(|required| required.verdict)).max()
 }
 
 fn cuts(points: &[Point]) -> Vec<&[Point]> {
@@ -188,7 +195,7 @@ fn point(scene: &Scene, sweep: &Sweep, rounds: &[Round], direction: usize, scale
         brightest_batch: seen.brightest,
         classes: classes.into_iter().map(|(class, part)| (label(scene, class), part)).collect(),
         groups,
-        required: limit.map(|limit| Required::of(limit, stray, seen.resolved(BRIGHTEST), upper)),
+        required: limit.map(|limit| Required::of(limit, stray, seen.resolved(BRIGHTEST), upper, ONE_SIDED)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! One coating of a system for itself: what it is made of on both sides, between the media of its faces.
 
 use super::coatings::{self, Faces};
-use super::{Shop, build, media, understanding};
+use super::{Shop, build, media};
 use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::scene::Scene;
 use crate::system::document::Document;
@@ -75,7 +75,7 @@ fn place(scene: &Scene, name: &str) -> Option<[u16; 2]> {
         *label == alone || label.starts_with(&more)
     };
     let part = scene.parts.iter().find(|part| part.surface[0].iter().any(|&surface| has(surface)))?;
-    Some(understanding::sides(scene, part))
+    Some(scene.sides(part))
 }
 
 fn unknown(noun: &str, name: &str, known: &[&str]) -> Error {

@@ -15,6 +15,7 @@ mod media;
 mod models;
 mod parts;
 mod receivers;
+mod requirements;
 mod scatter;
 mod scatterer;
 mod sweep;
@@ -36,6 +37,7 @@ use glam::DVec3;
 pub use glare::Glare;
 pub use mask::Mask;
 pub use parts::{parts_of_file, parts_of_system};
+pub use requirements::Requirement;
 pub use scatterer::{Scatterer, scatterer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -59,6 +61,8 @@ pub struct Compiled {
     pub sweeps: Vec<Sweep>,
     /// Fields with a black patch.
     pub glare: Vec<Glare>,
+    /// What is required of the stray light on detectors.
+    pub requirements: Vec<Requirement>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -159,6 +163,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let mut sources = lights::sources(&mut shop, &assembly);
     let sweeps = sweep::sweeps(&mut shop, &assembly, &watched, &mut sources);
     let glare = glare::glare(&mut shop, &assembly, &watched);
+    let requirements = requirements::requirements(&mut shop, &watched);
     let lit: Vec<Source> = sources.iter().chain(glare.iter().flat_map(|glare| &glare.sources)).cloned().collect();
     coatings::ranges(&mut shop, &coatings, &lit);
     if !lit.is_empty() {
@@ -200,7 +205,10 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     }
     let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
     let finishes = scatter::assumptions(document);
-    Ok((Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps, glare }, assembly))
+    Ok((
+        Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps, glare, requirements },
+        assembly,
+    ))
 }
 
 fn stem(document: &Document) -> String {
@@ -236,6 +244,7 @@ fn settings(document: &Document) -> Settings {
             Way::Backward => Trace::Backward,
         },
         booking: default.booking,
+        ways: default.ways,
     }
 }
 

@@ -21,6 +21,7 @@ mod medium;
 mod names;
 mod parameter;
 mod read;
+mod requirement;
 mod run;
 mod scatter;
 mod source;
@@ -43,6 +44,7 @@ pub use medium::Medium;
 pub use names::Names;
 pub use parameter::Choice;
 pub use read::SECTIONS;
+pub use requirement::{Limit, Requirement};
 pub use run::{Importance, Roulette, Run, Until, Way};
 pub use scatter::{FacetEnergy, FacetLaw, Facets, Roughness, Scatter, ScatterAxis, ScatterSide, Unmeasured};
 pub use source::{Angular, Extent, Handedness, Polarization, Source, Spectrum};
@@ -99,6 +101,8 @@ pub struct System {
     pub glare: Names<Glare>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
+    /// What is required of the stray light on them, by name.
+    pub requirements: Names<Requirement>,
     /// What surfaces may aim at, by name.
     pub targets: Names<Target>,
     /// How it is traced.

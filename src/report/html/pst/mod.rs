@@ -6,6 +6,7 @@ mod table;
 
 use super::STYLE;
 use super::number::{estimate, limit, plain};
+use super::sheet::badge;
 use crate::report::measured::grouped;
 use crate::report::pst::Went;
 use crate::study::pst::{Curve, Point, Sweeps, Verdict};
@@ -16,12 +17,11 @@ pub use sky::picture as sky_picture;
 
 /// What this page adds to the style of a report.
 const MORE: &str = "
-.badge { display: inline-block; font: 600 12px var(--sans); letter-spacing: .05em; padding: 2px 8px; border-radius: 3px; white-space: nowrap; }
-.badge.pass { background: #e3f1e9; color: var(--good); } .badge.fail { background: #fbe4e6; color: #a3243b; }
-.badge.open { background: #fff1dc; color: var(--bad); } h2 .badge { font-size: 15px; vertical-align: 4px; margin-left: 12px; }
+h2 .badge { font-size: 15px; vertical-align: 4px; margin-left: 12px; }
 figure.wide svg { display: block; width: 100%; height: auto; } figure.wide { margin: 8px 0 26px; break-inside: avoid; }
 .total .badge { font-size: 20px; padding: 6px 14px; } .sky { max-width: 620px; }
-.thin td { padding-top: 4px; padding-bottom: 4px; } .thin .strip { height: 10px; min-width: 90px; }
+.thin .strip { height: 10px; min-width: 90px; }
+@media screen and (prefers-color-scheme: dark) { figure.wide svg { background: #fff; border-radius: 4px; } }
 ";
 
 /// The whole page.
@@ -129,15 +129,6 @@ fn value(point: &Point) -> Markup {
 /// Three digits are enough for what is compared.
 fn short(value: f64) -> Markup {
     plain(format!("{value:.2e}").parse().unwrap_or(value), "")
-}
-
-fn badge(verdict: Verdict) -> Markup {
-    let class = match verdict {
-        Verdict::Pass => "badge pass",
-        Verdict::NotResolved => "badge open",
-        Verdict::Fail => "badge fail",
-    };
-    html! { span class=(class) { (verdict) } }
 }
 
 fn section(index: usize, curve: &Curve) -> Markup {

@@ -1,6 +1,5 @@
 //! Where light goes on each surface: mirrored, passed, scattered, absorbed, at a few angles.
 
-use super::sides;
 use crate::optics::{Incidence, refraction};
 use crate::scene::Scene;
 use crate::surface::Surface;
@@ -48,7 +47,7 @@ pub(super) type Use = (u32, [u16; 2]);
 /// Every surface in use with the media around it, each once.
 pub(super) fn uses(scene: &Scene) -> BTreeSet<Use> {
     let both = |part| {
-        let [front, back] = sides(scene, part);
+        let [front, back] = scene.sides(part);
         let [ahead, behind] = part.surface[0];
         [(ahead, [front, back]), (behind, [back, front])]
     };

@@ -8,7 +8,7 @@ mod optics;
 
 use super::assembly::Assembly;
 use crate::geometry::mesh::Topology;
-use crate::scene::{Part, PartKind, Scene};
+use crate::scene::{Part, Scene};
 use crate::settings::Settings;
 use crate::system::document::Document;
 use glam::DVec3;
@@ -130,19 +130,10 @@ fn parts(scene: &Scene, assembly: &Assembly) -> Vec<PartFacts> {
         triangles: triangles[index],
         area: area[index],
         surfaces: part.surface[0].map(|surface| scene.surfaces[surface as usize].label.clone()),
-        media: sides(scene, part).map(|medium| scene.media[medium as usize].label.clone()),
+        media: scene.sides(part).map(|medium| scene.media[medium as usize].label.clone()),
         by_default: assembly.unsaid.contains(&(index as u32)),
     };
     scene.parts.iter().enumerate().map(fact).collect()
-}
-
-/// Media in front of and behind a part that nothing touches.
-pub(super) fn sides(scene: &Scene, part: &Part) -> [u16; 2] {
-    match part.kind {
-        PartKind::Face(solid) => [scene.ambient, scene.solids[solid as usize].medium],
-        PartKind::Sheet => [scene.ambient; 2],
-        PartKind::Between { back, front } => [front, back],
-    }
 }
 
 fn memory(scene: &Scene, settings: &Settings) -> Memory {

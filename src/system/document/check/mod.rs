@@ -5,6 +5,7 @@ mod coating;
 mod glare;
 mod light;
 mod optics;
+mod requirement;
 mod scatter;
 mod sweep;
 
@@ -78,6 +79,7 @@ impl Document {
         checker.sweeps();
         checker.glare();
         checker.detectors();
+        checker.requirements();
         checker.targets();
         checker.run(&self.system.run);
         if sound && !checker.problems.iter().any(Problem::is_error) {

@@ -4,18 +4,14 @@
 //!
 //!     PASS   m + t e <= L        FAIL   m - t e > L        NOT RESOLVED   neither
 //!
-//! t being the quantile of Student's t for 95 % on one side: a PASS is wrong in one of twenty at most. Where nothing arrived, the
+//! t being the quantile of Student's t on one side: with 95 % a PASS is wrong in one of twenty at most. Where nothing arrived, the
 //! upper limit must be below L. A value from fewer than 30 source rays, or of which one batch brought more than a quarter, is not resolved:
 //! its error is itself a guess.
 //! What no source ray has found yet is in no error bar: a PASS is as good as the search was.
 
-use super::Point;
-use crate::tally::results::Estimate;
+use super::results::Estimate;
 use serde::Serialize;
 use std::fmt;
-
-/// Student's t, one-sided 95 %, of 63 degrees of freedom: a round has 64 batches at least.
-const ONE_SIDED: f64 = 1.669;
 
 /// Fewest contributing source rays of a verdict.
 const FEWEST: u64 = 30;
@@ -40,17 +36,17 @@ impl fmt::Display for Verdict {
 /// What is required of a point, and whether it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Required {
-    /// Largest stray PST allowed.
+    /// Largest value of stray light allowed, such as a PST or a ratio to the signal.
     pub limit: f64,
-    /// Limit over stray PST, or over its upper limit where nothing arrived; above 1 there is room.
+    /// Limit over the value, or over its upper limit where nothing arrived; above 1 there is room.
     pub margin: f64,
     pub verdict: Verdict,
 }
 
 impl Required {
-    /// Of a value from so many source rays that brought stray light, or of its `upper` limit if there are none.
-    pub fn of(limit: f64, stray: Estimate, contributing: u64, upper: f64) -> Required {
-        let reach = ONE_SIDED * stray.error;
+    /// Of a value from so many source rays that brought stray light, or of its `upper` limit if there are none; `quantile` is t.
+    pub fn of(limit: f64, stray: Estimate, contributing: u64, upper: f64, quantile: f64) -> Required {
+        let reach = quantile * stray.error;
         // No stray light, though light came: its upper limit stands for it.
         let nothing = contributing == 0 || stray.mean <= 0.0;
         let verdict = match () {
@@ -64,20 +60,14 @@ impl Required {
     }
 }
 
-impl Verdict {
-    /// Of all points that something is required of: the worst; `None` if there are none.
-    pub fn of_all(points: &[Point]) -> Option<Verdict> {
-        points.iter().filter_map(|point| point.required.map(|required| required.verdict)).max()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_verdict_needs_the_whole_interval_on_one_side() {
-        let of = |limit: f64, rays: u64| Required::of(limit, Estimate { mean: 1.0, error: 0.1 }, rays, 5.0).verdict;
+        let of =
+            |limit: f64, rays: u64| Required::of(limit, Estimate { mean: 1.0, error: 0.1 }, rays, 5.0, 1.669).verdict;
         assert_eq!(of(1.2, 100), Verdict::Pass);
         assert_eq!(of(1.1, 100), Verdict::NotResolved);
         assert_eq!(of(0.9, 100), Verdict::NotResolved);
@@ -87,7 +77,7 @@ mod tests {
 
     #[test]
     fn where_nothing_came_the_upper_limit_decides() {
-        let of = |upper: f64| Required::of(1.0, Estimate::default(), 0, upper);
+        let of = |upper: f64| Required::of(1.0, Estimate::default(), 0, upper, 1.669);
         assert_eq!((of(0.5).verdict, of(0.5).margin), (Verdict::Pass, 2.0));
         assert_eq!(of(1.5).verdict, Verdict::NotResolved);
     }
