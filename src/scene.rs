@@ -93,7 +93,7 @@ pub struct Crossed {
 impl Scene {
     /// Slots of a run with `rows` rows in its path table.
     pub fn layout(&self, rows: usize) -> Layout {
-        let bins = self.detectors.iter().map(|d| d.grid.shape().iter().product()).collect();
+        let bins = self.detectors.iter().map(|d| [d.grid.shape().iter().product(), d.regions.len()]).collect();
         Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows)
     }
 
