@@ -93,7 +93,7 @@ pub struct Crossed {
 impl Scene {
     /// Slots of a run with `rows` rows in its path table.
     pub fn layout(&self, rows: usize) -> Layout {
-        let bins = self.detectors.iter().map(|d| d.grid.shape().iter().product()).collect();
+        let bins = self.detectors.iter().map(|d| [d.grid.shape().iter().product(), d.regions.len()]).collect();
         let layout = Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows);
         // Without optics nothing makes an image that would outshine it.
         if self.has_optics { layout.with_stray_bins() } else { layout }

@@ -369,3 +369,22 @@ proptest::proptest! {
         }
     }
 }
+
+#[test]
+fn what_a_detector_counts_and_where() {
+    let with = |more: &str| after("pixels: (256, 256)", &format!("pixels: (256, 256), {more}"));
+    let one = |more: &str| {
+        let found = with(more);
+        assert_eq!(found.len(), 1, "{found:?}");
+        found[0].clone()
+    };
+    let qe = one(r#"counts: Electrons(qe: [("600 nm", 0.2), ("500 nm", 0.6)])"#);
+    assert!(qe.contains("counts.qe") && qe.contains("do not rise"), "{qe}");
+    let filter = one("filter: 1.5");
+    assert!(filter.contains(".filter") && filter.contains("from 0 to 1"), "{filter}");
+    let ring = one(r#"regions: [("ring", Annulus(at: ("0 mm", "0 mm"), inner: "2 mm", outer: "1 mm"))]"#);
+    assert!(ring.contains("no area"), "{ring}");
+    let disc = r#"("a", Disk(at: ("0 mm", "0 mm"), radius: "2 mm"))"#;
+    let twice = one(&format!("regions: [{disc}, {disc}]"));
+    assert!(twice.contains("\"a\" is there already"), "{twice}");
+}

@@ -98,6 +98,8 @@ fn detector(flux: Estimate, unit: &str, classes: &[(&str, f64, f64)]) -> Detecto
         brightest_batch: 0.004,
         variance_of_variance: 0.03,
         largest: None,
+        counted: None,
+        regions: Default::default(),
         sources: BTreeMap::new(),
         stray: stray(classes),
         convergence: convergence(flux),

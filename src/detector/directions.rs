@@ -122,7 +122,7 @@ mod tests {
         let grid = Directions { frame: Frame::WORLD, rings: Rings::Polar, limit: 1.0, rows: 1, columns: 4 };
         let bin = |x: f64, y: f64| {
             let direction = DVec3::new(x, y, 2.0).normalize();
-            grid.bin(&Arrival { point: DVec3::ZERO, direction, triangle: None })
+            grid.bin(&Arrival { point: DVec3::ZERO, direction, wavelength: 550e-9, triangle: None })
         };
         assert_eq!(
             [bin(1.0, 0.1), bin(-0.1, 1.0), bin(-1.0, -0.1), bin(0.1, -1.0)],

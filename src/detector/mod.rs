@@ -5,10 +5,14 @@
 
 pub mod directions;
 pub mod pixels;
+pub mod region;
+pub mod response;
 pub mod triangles;
 
 use crate::geometry::{Frame, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+pub use region::Region;
+pub use response::Response;
 
 /// Light arriving at a detector.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +21,8 @@ pub struct Arrival {
     pub point: DVec3,
     /// Unit.
     pub direction: DVec3,
+    /// In vacuum, m.
+    pub wavelength: f64,
     /// Triangle that was hit, for detectors on a part.
     pub triangle: Option<u32>,
 }
@@ -38,6 +44,10 @@ pub trait Grid: Send + Sync + std::fmt::Debug {
     fn frame(&self) -> Frame;
     /// Where column 0 and row 0 begin, scene coordinates, m.
     fn origin(&self) -> DVec3;
+    /// A point (scene coordinates, m) along columns and rows from the middle of the map, m; `None` where there is no plane.
+    fn place(&self, _point: DVec3) -> Option<DVec2> {
+        None
+    }
 }
 
 /// How the bins lie.
@@ -128,6 +138,22 @@ pub struct Detector {
     pub place: Place,
     pub side: Side,
     pub grid: Box<dyn Grid>,
+    /// What the map counts.
+    pub response: Response,
+    pub regions: Vec<Region>,
+}
+
+impl Detector {
+    /// Size of a bin that its value is divided by: m2, sr, or 1 where pixels count one by one.
+    pub fn extent(&self, bin: usize) -> f64 {
+        let extent = self.grid.extent(bin);
+        if self.response.by_the_pixel() && extent > 0.0 { 1.0 } else { extent }
+    }
+
+    /// Unit of the map.
+    pub fn unit(&self) -> &'static str {
+        self.response.of_bins(self.grid.unit())
+    }
 }
 
 impl Window {

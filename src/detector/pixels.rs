@@ -115,6 +115,11 @@ impl Grid for Pixels {
     fn origin(&self) -> DVec3 {
         self.corner
     }
+
+    fn place(&self, point: DVec3) -> Option<DVec2> {
+        let size = self.pitch * DVec2::new(self.columns as f64, self.rows as f64);
+        Some(self.plane(point) - 0.5 * size)
+    }
 }
 
 /// Area of the disc of radius `r` about the origin inside the rectangle [low, high], m2: by the exact antiderivative of the
@@ -204,7 +209,7 @@ mod tests {
         let grid = Pixels::new(Frame::WORLD, DVec3::ZERO, DVec2::new(-2.0, -1.0), DVec2::new(2.0, 1.0), [4, 2]);
         let bin = |x: f64, y: f64| {
             let point = DVec3::new(x, y, 0.0);
-            grid.bin(&Arrival { point, direction: DVec3::Z, triangle: None })
+            grid.bin(&Arrival { point, direction: DVec3::Z, wavelength: 550e-9, triangle: None })
         };
         assert_eq!(bin(-1.9, -0.9), Some(0));
         assert_eq!(bin(1.9, -0.9), Some(3));

@@ -43,6 +43,15 @@ pub fn merit(detector: &DetectorResult, run: &RunInfo) -> Option<String> {
     })
 }
 
+/// What a detector counts by its own measure, and in its regions: what, how much, unit.
+pub fn counted(detector: &DetectorResult) -> Vec<(String, Estimate, &str)> {
+    let counted = detector.counted.as_ref();
+    let unit = counted.map_or("W", |counted| &counted.unit);
+    let all = counted.map(|counted| ("counted".into(), counted.total, unit));
+    let regions = detector.regions.iter().map(|(name, value)| (format!("in {name}"), *value, unit));
+    all.into_iter().chain(regions).collect()
+}
+
 /// The largest arrival in words.
 pub fn largest(detector: &DetectorResult) -> Option<String> {
     let largest = detector.largest.as_ref()?;

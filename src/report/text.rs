@@ -82,6 +82,9 @@ fn key_numbers(out: &mut String, results: &Results, run: &RunInfo, name: &str) -
     };
     writeln!(out, "\n{name}: {flux} W")?;
     said(out, digest::resolution(detector))?;
+    for (what, value, unit) in digest::counted(detector) {
+        writeln!(out, "  {what}: {} {unit}", estimate(value))?;
+    }
     if detector.upper_limit_w.is_some() {
         return Ok(());
     }

@@ -118,6 +118,8 @@ mod tests {
         options::<Way>();
         options::<Quantity>();
         options::<Bins>();
+        options::<Counts>();
+        options::<Region>();
     }
 
     #[test]

@@ -57,8 +57,8 @@ pub struct Layout {
     sources: usize,
     /// First slot of each detector.
     detectors: Vec<usize>,
-    /// Bins of each detector.
-    bins: Vec<usize>,
+    /// Bins and regions of each detector.
+    bins: Vec<[usize; 2]>,
     rows: usize,
     first_row: usize,
     /// Whether what happened on the way is counted.
@@ -86,14 +86,14 @@ impl Layout {
     /// Of what detectors sent out backwards: what was cut by the limit on events or lost to geometry faults, in shares.
     pub const LOST_BACKWARDS: usize = 6;
 
-    /// Slots for so many parts, media, sources, bins per detector and path rows.
-    pub fn new(parts: usize, media: usize, sources: usize, bins: Vec<usize>, rows: usize) -> Layout {
+    /// Slots for so many parts, media, sources, bins and regions per detector, and path rows.
+    pub fn new(parts: usize, media: usize, sources: usize, bins: Vec<[usize; 2]>, rows: usize) -> Layout {
         let mut next = TOTALS + CUTS + LOSSES + parts + media;
         let detectors = bins
             .iter()
-            .map(|bins| {
+            .map(|[bins, regions]| {
                 let first = next;
-                next += 2 + Class::COUNT + sources * (1 + Class::COUNT) + bins;
+                next += 2 + Class::COUNT + sources * (1 + Class::COUNT) + 1 + regions + bins;
                 first
             })
             .collect();
@@ -118,7 +118,7 @@ impl Layout {
     /// First of the bins for stray light alone of a detector.
     fn first_stray_bin(&self, detector: usize) -> usize {
         let events = if self.events { self.bins.len() * self.events_each() } else { 0 };
-        self.first_row + self.rows * ROW + events + self.bins[..detector].iter().sum::<usize>()
+        self.first_row + self.rows * ROW + events + self.bins[..detector].iter().map(|[bins, _]| bins).sum::<usize>()
     }
 
     /// Stray light in a bin; `None` where it is not counted apart.
@@ -192,13 +192,23 @@ impl Layout {
         self.source(detector, self.sources) + source * Class::COUNT + class
     }
 
+    /// All that a detector counts, in its own unit.
+    pub fn counted(&self, detector: usize) -> usize {
+        self.source_class(detector, self.sources, 0)
+    }
+
+    /// What a detector counts in a region, in its own unit.
+    pub fn region(&self, detector: usize, region: usize) -> usize {
+        self.counted(detector) + 1 + region
+    }
+
     pub fn bin(&self, detector: usize, bin: usize) -> usize {
-        self.source_class(detector, self.sources, bin)
+        self.region(detector, self.bins[detector][1]) + bin
     }
 
     /// Bins of a detector.
     pub fn bins(&self, detector: usize) -> usize {
-        self.bins[detector]
+        self.bins[detector][0]
     }
 
     /// Flux of a path row, W.
@@ -244,7 +254,7 @@ mod tests {
 
     #[test]
     fn no_two_numbers_share_a_slot() {
-        let layout = Layout::new(3, 2, 4, vec![4, 5], 6).with_events().with_stray_bins();
+        let layout = Layout::new(3, 2, 4, vec![[4, 0], [5, 2]], 6).with_events().with_stray_bins();
         let mut slots: Vec<usize> = (0..TOTALS).collect();
         slots.extend(layout.cuts().chain(layout.losses()).chain(layout.absorbers()));
         for d in 0..2 {
@@ -252,6 +262,8 @@ mod tests {
             slots.extend((0..Class::COUNT).map(|c| layout.class(d, c)));
             slots.extend((0..4).map(|s| layout.source(d, s)));
             slots.extend((0..4 * Class::COUNT).map(|i| layout.source_class(d, i / Class::COUNT, i % Class::COUNT)));
+            slots.push(layout.counted(d));
+            slots.extend((0..[0, 2][d]).map(|r| layout.region(d, r)));
             slots.extend((0..layout.bins(d)).map(|b| layout.bin(d, b)));
             slots.extend((0..layout.bins(d)).filter_map(|b| layout.stray_bin(d, b)));
             slots.extend(layout.stray(d).into_iter().flat_map(|first| [first, first + 1]));

@@ -58,6 +58,10 @@ pub struct DetectorResult {
     pub peak_w_m2: Peak,
     /// Unit of the map.
     pub unit: String,
+    /// What it counts where that is not all watts; else null.
+    pub counted: Option<CountedResult>,
+    /// What falls on its regions, in the unit of `counted`, else W.
+    pub regions: BTreeMap<String, Estimate>,
     /// Share of the flux that the brightest batch brought: where it is large, the error is a guess.
     pub brightest_batch: f64,
     /// Relative variance of the variance of the mean, from the batches: about 2 / batches where they are normal, and more
@@ -75,6 +79,14 @@ pub struct DetectorResult {
     pub convergence: Convergence,
     /// Fraction of bins with fewer than 30 contributing source rays among those with any, 0..1.
     pub unresolved: f64,
+}
+
+/// What a detector counts, by wavelength and behind its filter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CountedResult {
+    /// ph/s, e-/s, lm, or W behind a filter.
+    pub unit: String,
+    pub total: Estimate,
 }
 
 /// The largest arrival on a detector.

@@ -3,7 +3,7 @@
 use super::backward::Backward;
 use super::largest::Largest;
 use super::paths::{Candidates, Rows};
-use crate::detector::Arrival;
+use crate::detector::{Arrival, Region};
 use crate::packet::Ancestry;
 use crate::scene::Scene;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
@@ -91,7 +91,8 @@ impl<'a, const V: usize> Book<'a, V> {
 
     /// Light on a detector, by whichever way it was found.
     pub fn counted(&mut self, scene: &Scene, detector: usize, ancestry: &Ancestry, flux: [f64; V], arrival: &Arrival) {
-        let grid = &scene.detectors[detector].grid;
+        let watched = &scene.detectors[detector];
+        let grid = &watched.grid;
         let Some(bin) = grid.bin(arrival) else { return };
         let Some(rows) = self.rows else {
             return self.candidates.note(detector, ancestry, flux.into_iter().fold(0.0, f64::max));
@@ -102,9 +103,17 @@ impl<'a, const V: usize> Book<'a, V> {
         self.live.add(self.layout.class(detector, class), flux);
         self.live.add(self.layout.source(detector, source), flux);
         self.live.add(self.layout.source_class(detector, source, class), flux);
-        self.live.add(self.layout.bin(detector, bin), flux);
+        let response = watched.response.of(arrival.wavelength);
+        let counted = flux.map(|flux| flux * response);
+        self.live.add(self.layout.counted(detector), counted);
+        self.live.add(self.layout.bin(detector, bin), counted);
+        let place = if watched.regions.is_empty() { None } else { grid.place(arrival.point) };
+        let inside = |region: &Region| place.is_some_and(|place| region.holds(place));
+        for region in (0..watched.regions.len()).filter(|&region| inside(&watched.regions[region])) {
+            self.live.add(self.layout.region(detector, region), counted);
+        }
         if ancestry.class() != scene.image() {
-            self.layout.stray_bin(detector, bin).into_iter().for_each(|slot| self.live.add(slot, flux));
+            self.layout.stray_bin(detector, bin).into_iter().for_each(|slot| self.live.add(slot, counted));
             self.layout.stray(detector).into_iter().for_each(|slot| self.events(detector, slot, ancestry, flux));
         }
         match rows.find(detector, ancestry.key) {

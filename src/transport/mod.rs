@@ -115,48 +115,87 @@ pub fn batchwise<const V: usize>(
         Booking::Events => scene.layout(rows.rows.len()).with_events(),
     };
     let pool = Mutex::new(Vec::new());
-    let mut fold = Fold::default();
-    let mut fluxes = vec![Vec::new(); scene.detectors.len()];
-    let mut largest = Largest::new(scene.detectors.len());
-    let mut parted = vec![Vec::new(); scene.detectors.len()];
-    let (mut done, mut segments) = (0, 0);
+    let mut taken = Taken::new(scene);
     let stages = stages(settings);
     'stages: for &stage in &stages {
-        while done < stage {
-            let end = (done + CHUNK).min(stage);
-            let batches: Vec<u64> = (done..end).collect();
+        while taken.batches < stage {
+            let end = (taken.batches + CHUNK).min(stage);
+            let batches: Vec<u64> = (taken.batches..end).collect();
             let chunk: Vec<_> = batches
                 .into_par_iter()
                 .with_max_len(1)
                 .map(|batch| (!stop.load(Ordering::Relaxed)).then(|| plan.counted(&layout, &rows, &pool, batch)))
                 .collect();
             for finished in chunk {
-                let Some((sums, batch_largest, flights)) = finished else { break 'stages };
-                batch(&layout, &rows, &sums);
-                fluxes.iter_mut().enumerate().for_each(|(d, all)| all.push(sums.values(layout.detector(d))));
-                largest.merge(batch_largest);
-                let image = scene.image();
-                parted.iter_mut().enumerate().for_each(|(d, all)| all.push(stray_and_image(&layout, d, image, &sums)));
-                fold.push(sums);
-                segments += flights;
-                done += 1;
+                let Some(finished) = finished else { break 'stages };
+                batch(&layout, &rows, &finished.sums);
+                taken.take(&layout, finished);
             }
             progress(&Progress {
-                batches: done,
+                batches: taken.batches,
                 of: settings.batches(),
                 batch_rays,
                 layout: &layout,
-                sums: &fold.total(),
+                sums: &taken.fold.total(),
             });
         }
-        if precise_enough(settings, &layout, &fold.total()) {
+        if precise_enough(settings, &layout, &taken.fold.total()) {
             break;
         }
     }
-    let interrupted = stop.load(Ordering::Relaxed) && done < settings.batches();
+    let interrupted = stop.load(Ordering::Relaxed) && taken.batches < settings.batches();
+    let Taken { fold, fluxes, parted, largest, segments, .. } = taken;
     let sums = fold.total();
     let ways = if settings.ways && !interrupted { ways::follow(&plan, &layout, &rows, &sums) } else { Vec::new() };
     Counts { layout, rows, sums, fluxes, parted, ways, batch_rays, largest, segments, interrupted, guidance }
+}
+
+/// What one batch counted.
+struct Counted<const V: usize> {
+    sums: Sums<V>,
+    largest: Largest<V>,
+    /// Flights.
+    segments: u64,
+}
+
+/// What all batches so far counted, in their order.
+struct Taken<const V: usize> {
+    image: Class,
+    batches: u64,
+    fold: Fold<V>,
+    /// By detector and batch, as in [`Counts`].
+    fluxes: Vec<Vec<[f64; V]>>,
+    parted: Vec<Vec<[[f64; V]; 2]>>,
+    largest: Largest<V>,
+    segments: u64,
+}
+
+impl<const V: usize> Taken<V> {
+    fn new(scene: &Scene) -> Taken<V> {
+        let detectors = scene.detectors.len();
+        Taken {
+            image: scene.image(),
+            batches: 0,
+            fold: Fold::default(),
+            fluxes: vec![Vec::new(); detectors],
+            parted: vec![Vec::new(); detectors],
+            largest: Largest::new(detectors),
+            segments: 0,
+        }
+    }
+
+    /// The next batch.
+    fn take(&mut self, layout: &Layout, batch: Counted<V>) {
+        let sums = &batch.sums;
+        for (d, fluxes) in self.fluxes.iter_mut().enumerate() {
+            fluxes.push(sums.values(layout.detector(d)));
+            self.parted[d].push(stray_and_image(layout, d, self.image, sums));
+        }
+        self.largest.merge(batch.largest);
+        self.fold.push(batch.sums);
+        self.segments += batch.segments;
+        self.batches += 1;
+    }
 }
 
 /// Flux on a detector, W: of all classes but that of what is meant to arrive, and of that class.
@@ -234,23 +273,23 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The sums of a batch, its largest contributions, and its flights.
+    /// Traces a batch of the run.
     fn counted<const V: usize>(
         &self,
         layout: &'a Layout,
         rows: &'a Rows,
         pool: &Mutex<Vec<Live<V>>>,
         batch: u64,
-    ) -> (Sums<V>, Largest<V>, u64) {
+    ) -> Counted<V> {
         let idle = pool.lock().ok().and_then(|mut pool| pool.pop());
         let live = idle.unwrap_or_else(|| Live::new(layout.len()));
         let mut book = self.trace(Book::new(layout, live, Some(rows)), self.settings.seed, batch);
         let sums = book.finish();
-        let (largest, segments) = (book.largest, book.segments);
+        let Book { largest, segments, live, .. } = book;
         if let Ok(mut pool) = pool.lock() {
-            pool.push(book.live);
+            pool.push(live);
         }
-        (sums, largest, segments)
+        Counted { sums, largest, segments }
     }
 }
 

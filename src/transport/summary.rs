@@ -201,7 +201,9 @@ impl<const V: usize> Teller<'_, V> {
             rays,
             upper_limit_w: (rays == 0).then(|| self.upper()),
             peak_w_m2: self.peak(d),
-            unit: self.scene.detectors[d].grid.unit().into(),
+            unit: self.scene.detectors[d].unit().into(),
+            counted: self.counted(d),
+            regions: self.regions(d),
             brightest_batch: self.sums().brightest(slot, self.lane),
             variance_of_variance: variance_of_variance(self.counts.fluxes[d].iter().map(|flux| flux[self.lane])),
             largest: self.largest(d),
@@ -243,11 +245,31 @@ impl<const V: usize> Teller<'_, V> {
         3.0 * self.scene.sources.iter().map(|s| s.flux).sum::<f64>() / rays
     }
 
+    /// What the detector counts where that is not all watts.
+    fn counted(&self, d: usize) -> Option<CountedResult> {
+        let response = &self.scene.detectors[d].response;
+        let total = self.estimate(self.counts.layout.counted(d));
+        (!response.is_flux()).then(|| CountedResult { unit: response.unit().into(), total })
+    }
+
+    fn regions(&self, d: usize) -> BTreeMap<String, Estimate> {
+        let regions = self.scene.detectors[d].regions.iter().enumerate();
+        regions.map(|(r, region)| (region.label.clone(), self.estimate(self.counts.layout.region(d, r)))).collect()
+    }
+
+    /// Most that a watt of any source may count as.
+    fn most(&self, d: usize) -> f64 {
+        let steps = (0..=1000).map(|i| f64::from(i) / 1000.0);
+        let response = &self.scene.detectors[d].response;
+        let lights = self.scene.sources.iter().flat_map(|source| steps.clone().map(|u| source.spectrum.wavelength(u)));
+        lights.map(|wavelength| response.of(wavelength)).fold(0.0, f64::max)
+    }
+
     fn peak(&self, d: usize) -> Peak {
-        let grid = &self.scene.detectors[d].grid;
-        let [_, columns] = grid.shape();
+        let detector = &self.scene.detectors[d];
+        let [_, columns] = detector.grid.shape();
         let value = |bin: usize| {
-            let extent = grid.extent(bin);
+            let extent = detector.extent(bin);
             let estimate = self.estimate(self.counts.layout.bin(d, bin));
             if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] }
         };
@@ -263,18 +285,18 @@ impl<const V: usize> Teller<'_, V> {
         let detector = &self.scene.detectors[d];
         let grid = &detector.grid;
         let bins = self.counts.layout.bins(d);
-        let upper = self.upper();
+        let upper = self.upper() * self.most(d);
         let mut map = MapResult {
             detector: detector.label.clone(),
             kind: grid.kind(),
             shape: grid.shape(),
             axes: grid.axes(),
-            unit: grid.unit(),
+            unit: detector.unit(),
             mean: vec![0.0; bins],
             error: vec![0.0; bins],
             rays: vec![0; bins],
             upper: vec![0.0; bins],
-            extent: (0..bins).map(|bin| grid.extent(bin)).collect(),
+            extent: (0..bins).map(|bin| detector.extent(bin)).collect(),
             origin: (grid.origin() + self.scene.shift).to_array(),
             column_direction: grid.frame().x.to_array(),
             row_direction: grid.frame().y.to_array(),
@@ -297,10 +319,10 @@ impl<const V: usize> Teller<'_, V> {
 
     /// Mean and error of stray light alone in every bin, where it is counted apart.
     fn stray_map(&self, d: usize) -> Option<[Vec<f64>; 2]> {
-        let grid = &self.scene.detectors[d].grid;
+        let detector = &self.scene.detectors[d];
         let value = |bin: usize| {
             let estimate = self.estimate(self.counts.layout.stray_bin(d, bin)?);
-            let extent = grid.extent(bin);
+            let extent = detector.extent(bin);
             Some(if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] })
         };
         let bins: Option<Vec<[f64; 2]>> = (0..self.counts.layout.bins(d)).map(value).collect();

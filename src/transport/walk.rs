@@ -270,7 +270,8 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                 let left = (-absorption(index, packet.wavelength) * distance).exp();
                 here.light = here.light.map(|light| light * left);
             }
-            let arrival = Arrival { point, direction: packet.ray.direction, triangle: None };
+            let arrival =
+                Arrival { point, direction: packet.ray.direction, wavelength: packet.wavelength, triangle: None };
             self.watch.arrives(detector, &arrival, here.flux());
             self.book.arrived(self.scene, detector, &here.ancestry, here.fluxes(), &arrival);
         }
@@ -284,6 +285,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                     let arrival = Arrival {
                         point: crossing.point,
                         direction: packet.ray.direction,
+                        wavelength: packet.wavelength,
                         triangle: Some(hit.triangle),
                     };
                     self.watch.arrives(detector as usize, &arrival, packet.flux());
@@ -296,7 +298,12 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
     fn escape(&mut self, packet: &Packet<V>) {
         for (detector, watched) in self.scene.detectors.iter().enumerate() {
             if self.trail.is_none() && matches!(watched.place, Place::FarField) {
-                let arrival = Arrival { point: packet.ray.origin, direction: packet.ray.direction, triangle: None };
+                let arrival = Arrival {
+                    point: packet.ray.origin,
+                    direction: packet.ray.direction,
+                    wavelength: packet.wavelength,
+                    triangle: None,
+                };
                 self.book.arrived(self.scene, detector, &packet.ancestry, packet.fluxes(), &arrival);
             }
         }

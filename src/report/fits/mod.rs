@@ -25,7 +25,11 @@ const RECORD: usize = 2880;
 
 /// Writes the primary map and its extensions.
 pub fn write(out: &mut impl Write, map: &MapResult, results: &Results, run: &RunInfo) -> io::Result<()> {
-    let size = if map.unit.ends_with("sr") { "sr" } else { "m2" };
+    let size = match map.unit {
+        "W/sr" | "cd" => "sr",
+        unit if unit.ends_with("/px") => "px",
+        _ => "m2",
+    };
     let mut primary = Header::primary(-64, map.shape);
     describe(&mut primary, "MEAN", map.unit, map);
     origin(&mut primary, map, results, run);

@@ -4,6 +4,8 @@ use super::Shop;
 use super::assembly::Assembly;
 use crate::detector::directions::{Directions, Rings};
 use crate::detector::pixels::Pixels;
+use crate::detector::region::{Outline, Region};
+use crate::detector::response::{Count, Efficiency, Response};
 use crate::detector::triangles::Triangles;
 use crate::detector::{Detector, Grid, Place, Shape, Side, Window};
 use crate::error::Problem;
@@ -57,9 +59,44 @@ pub fn detectors(shop: &mut Shop, assembly: &Assembly) -> Vec<(Detector, Vec<usi
             written::Side::Front => Side::Front,
             written::Side::Back => Side::Back,
         };
-        detectors.push((Detector { label: name.into(), place, side, grid }, parts));
+        let regions = regions(written);
+        if grid.place(DVec3::ZERO).is_none() && !regions.is_empty() {
+            let problem = Problem::error("regions lie on a plane, and this detector is curved");
+            shop.fault(
+                &format!("detectors[{name:?}].regions"),
+                problem.expecting("a flat node, a rectangle or a disc"),
+            );
+        }
+        let response = response(written);
+        detectors.push((Detector { label: name.into(), place, side, grid, response, regions }, parts));
     }
     detectors
+}
+
+/// What a watt counts as.
+fn response(written: &written::Detector) -> Response {
+    let efficiency = |efficiency: &written::Efficiency| Efficiency::new(&efficiency.0);
+    let count = match &written.counts {
+        written::Counts::Watts => Count::Watts,
+        written::Counts::Photons => Count::Photons,
+        written::Counts::Electrons { qe } => Count::Electrons(efficiency(qe)),
+        written::Counts::Lumens => Count::Lumens,
+    };
+    Response { count, filter: written.filter.as_ref().map(efficiency) }
+}
+
+fn regions(written: &written::Detector) -> Vec<Region> {
+    let region = |(label, region): &(String, written::Region)| {
+        let (at, outline) = match region {
+            written::Region::Disk { at, radius } => (at, Outline::Ring { inner: 0.0, outer: radius.0 }),
+            written::Region::Annulus { at, inner, outer } => (at, Outline::Ring { inner: inner.0, outer: outer.0 }),
+            written::Region::Rectangle { at, width, height } => {
+                (at, Outline::Rectangle { half: 0.5 * DVec2::new(width.0, height.0) })
+            }
+        };
+        Region { label: label.clone(), at: DVec2::new(at.0.0, at.1.0), outline }
+    };
+    written.regions.iter().map(region).collect()
 }
 
 type Watched = (Place, Frame, Option<Box<dyn Grid>>, Vec<usize>);

@@ -35,7 +35,7 @@ mod variant;
 pub use bulk::{Bulk, OverWavelength};
 pub use coating::{Coating, Row, Specular};
 pub use configure::{About, Change, Replacement};
-pub use detector::{Bins, Detector, Quantity, Receiver};
+pub use detector::{Bins, Counts, Detector, Efficiency, Quantity, Receiver, Region};
 pub use element::{Body, Element, Optical};
 pub use exact::{Exact, Form, Relative};
 pub use geometry::{Geometry, Up};

@@ -144,7 +144,7 @@ impl Backward {
         birth.wavelength = group.spectrum.wavelength(u(4));
         let wavelength = birth.wavelength;
         let triangle = birth.from.map(|(triangle, _)| triangle);
-        let arrival = Arrival { point: birth.ray.origin, direction: -birth.ray.direction, triangle };
+        let arrival = Arrival { point: birth.ray.origin, direction: -birth.ray.direction, wavelength, triangle };
         let rng = Rng::new(walk.seed, history, 1);
         let mut packet = walk.born(source, (0, history), birth, 1.0, rng);
         let index = walk.scene.index(walk.scene.medium_in(&packet.solids), wavelength).re;

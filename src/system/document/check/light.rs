@@ -1,12 +1,9 @@
-//! Checks of sources, detectors and targets.
+//! Checks of sources and targets.
 
 use super::Checker;
 use crate::error::Problem;
-use crate::system::document::{Angular, Detector, Extent, Quantity, Receiver, Source, Spectrum, Target};
+use crate::system::document::{Angular, Extent, Source, Spectrum, Target};
 use crate::system::units::{Direction, Wavelength};
-
-/// Most bins of one map: 8 arrays of doubles of this size fill 4 GiB.
-const MOST_BINS: u64 = 1 << 26;
 
 impl Checker<'_> {
     pub(super) fn sources(&mut self) {
@@ -204,19 +201,6 @@ impl Checker<'_> {
         });
     }
 
-    pub(super) fn detectors(&mut self) {
-        let document = self.document;
-        let none = self.defined("detectors").is_empty();
-        self.require(!none, "detectors", || {
-            Problem::warning("the system has no detector: only the ledger of the flux will be reported")
-        });
-        for (name, detector) in document.system.detectors.iter() {
-            let path = format!("detectors[{name:?}]");
-            self.receiver(&detector.on, &format!("{path}.on"));
-            self.map(detector, &path);
-        }
-    }
-
     pub(super) fn targets(&mut self) {
         let document = self.document;
         for (name, target) in document.system.targets.iter() {
@@ -233,35 +217,5 @@ impl Checker<'_> {
                 Target::Disk { at: _, normal: _, radius } => self.positive(radius.0, &format!("{path}.radius")),
             }
         }
-    }
-
-    fn receiver(&mut self, receiver: &Receiver, path: &str) {
-        match receiver {
-            Receiver::Node(glob) => self.not_empty(glob, path, "the name of the node"),
-            Receiver::Rectangle { at: _, normal, x, width, height } => {
-                self.positive(width.0, &format!("{path}.width"));
-                self.positive(height.0, &format!("{path}.height"));
-                if let Some(x) = x {
-                    self.not_parallel(*normal, *x, &format!("{path}.x"), "normal");
-                }
-            }
-            Receiver::Disk { at: _, normal: _, radius } => self.positive(radius.0, &format!("{path}.radius")),
-            Receiver::FarField { axis: _ } => {}
-        }
-    }
-
-    fn map(&mut self, detector: &Detector, path: &str) {
-        let (columns, rows) = detector.pixels.unwrap_or((1, 1));
-        let bins = u64::from(columns) * u64::from(rows);
-        self.range((1..=MOST_BINS).contains(&bins), &format!("{path}.pixels"), "at least (1, 1), at most 2^26 pixels");
-        let far = matches!(detector.on, Receiver::FarField { .. });
-        self.require(!far || detector.quantity == Quantity::Intensity, &format!("{path}.quantity"), || {
-            Problem::error("the far field has no area, so no irradiance").expecting("`quantity: Intensity`")
-        });
-        let directions = detector.quantity == Quantity::Intensity;
-        self.require(detector.bins.is_none() || directions, &format!("{path}.bins"), || {
-            Problem::error("`bins` sorts directions, and this detector maps positions")
-                .expecting("`quantity: Intensity`")
-        });
     }
 }

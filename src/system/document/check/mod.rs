@@ -2,6 +2,7 @@
 
 mod bulk;
 mod coating;
+mod detector;
 mod glare;
 mod light;
 mod optics;
