@@ -36,6 +36,7 @@ pub fn convergence(results: &Results, run: &RunInfo, detector: &DetectorResult) 
                     }
                     p.verdict.good[agreement(detector) <= 3.0].bad[agreement(detector) > 3.0] { (halves(detector)) }
                     @if let Some(merit) = digest::merit(detector, run) { p.verdict.plain { (merit) "." } }
+                    @if let Some(largest) = digest::largest(detector) { p.verdict.plain { (largest) "." } }
                 }
                 figure.small { (plot(&stages, last, results.batch_rays)) }
             }

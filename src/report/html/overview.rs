@@ -93,6 +93,7 @@ fn ratio(detector: &DetectorResult) -> Markup {
                 @if let Some(ratio) = stray.to_signal {
                     div.strong { dt { "Stray / signal" } dd { (estimate(ratio, "")) } }
                 }
+                @for (what, value, unit) in digest::counted(detector) { div { dt { (what) } dd { (estimate(value, unit)) } } }
             }
         }
     }
