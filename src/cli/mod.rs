@@ -11,6 +11,7 @@ pub mod fit;
 pub mod fit_bsdf;
 pub mod glare;
 pub mod import;
+pub mod objects;
 mod optics;
 pub mod pst;
 pub mod ray;
@@ -58,6 +59,8 @@ pub enum Verb {
     Pst(pst::PstArgs),
     /// Trace a uniform field with a black patch: veiling glare index
     Glare(glare::GlareArgs),
+    /// Say what the detectors see and the sources light, and what warm objects send by themselves
+    Objects(objects::ObjectsArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Trace one packet of 1 W and print every event

@@ -19,6 +19,7 @@ mod html;
 mod measured;
 mod name;
 mod npy;
+pub mod objects;
 mod paths;
 mod picture;
 pub mod problems;

@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod glare;
+pub mod objects;
 pub mod pst;
 pub mod record;
 pub mod sensitivity;

@@ -1,7 +1,7 @@
 //! A look over the tracer's shoulder: for `straylight ray` and for tests. A run watches nothing, at no cost.
 
 use crate::geometry::{Left, Ray};
-use crate::packet::Ancestry;
+use crate::packet::{Ancestry, Solids};
 use glam::DVec3;
 
 /// One event of a watched packet.
@@ -43,6 +43,8 @@ pub trait Watch {
     fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
     /// A packet of this flux (W) is scattered at the origin of the ray on which it came, in a medium. Called before its way is drawn.
     fn scattered(&mut self, _ray: &Ray, _medium: u16, _flux: f64) {}
+    /// So much flux (W) is absorbed on a flight in the innermost of these solids.
+    fn dims(&mut self, _solids: &Solids, _flux: f64) {}
     /// A packet of this flux (W) and direction arrives at a detector. Called before what is there acts on it.
     fn arrives(&mut self, _detector: usize, _direction: DVec3, _flux: f64) {}
     /// A packet left the scene.

@@ -7,6 +7,7 @@ mod compare;
 mod figure;
 mod ledger;
 mod number;
+mod objects;
 mod overview;
 mod paths;
 mod pst;
@@ -14,6 +15,7 @@ mod reproduce;
 mod section;
 
 use crate::study::compare::Comparison;
+use crate::study::objects::Objects;
 use crate::tally::results::{Results, RunInfo};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use pst::{curve_picture, pst_page, sky_picture};
@@ -38,6 +40,11 @@ pub fn page(results: &Results, run: &RunInfo) -> String {
 /// The page of a comparison.
 pub fn comparison(comparison: &Comparison, run: &RunInfo) -> String {
     whole(&comparison.system, &compare::body(comparison, run))
+}
+
+/// The page of critical and illuminated objects.
+pub fn objects(found: &Objects, run: &RunInfo) -> String {
+    whole(&found.system, &objects::body(found, run))
 }
 
 fn whole(system: &str, body: &Markup) -> String {

@@ -7,6 +7,7 @@ mod light;
 mod optics;
 mod scatter;
 mod sweep;
+mod thermal;
 
 use super::tree::Shape;
 use super::{About, Body, Document, Run, read, variant};
@@ -77,6 +78,7 @@ impl Document {
         checker.sources();
         checker.sweeps();
         checker.glare();
+        checker.thermal();
         checker.detectors();
         checker.targets();
         checker.run(&self.system.run);
