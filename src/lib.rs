@@ -33,7 +33,7 @@
 //!                    maps, tables, page, messages
 //! ─────────────────────────────────────────────────────────────
 //!                           study
-//!                    comparisons of variants, sensitivities, field sweeps, glare
+//!                    comparisons of variants, sensitivities, field sweeps, glare, critical objects
 //! ─────────────────────────────────────────────────────────────
 //!            system                      transport
 //!   document, glTF, compiler    walk, interaction, path table

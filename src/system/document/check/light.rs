@@ -11,7 +11,9 @@ const MOST_BINS: u64 = 1 << 26;
 impl Checker<'_> {
     pub(super) fn sources(&mut self) {
         let document = self.document;
-        let none = self.defined("sources").is_empty() && self.defined("sweeps").is_empty();
+        let dark = self.defined("sources").is_empty() && self.defined("sweeps").is_empty();
+        // What is warm shines by itself.
+        let none = dark && document.system.thermal.is_none();
         self.require(!none, "sources", || {
             Problem::error("the system has no light source").expecting("`sources: {..}`")
         });
