@@ -33,7 +33,7 @@
 //!                    maps, tables, page, messages
 //! ─────────────────────────────────────────────────────────────
 //!                           study
-//!                    comparisons of variants, sensitivities, field sweeps, glare, requirements, drawings
+//!                    comparisons of variants, sensitivities, field sweeps, glare, critical objects, requirements, drawings
 //! ─────────────────────────────────────────────────────────────
 //!            system                      transport
 //!   document, glTF, compiler    walk, interaction, path table

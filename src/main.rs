@@ -17,6 +17,7 @@ fn main() -> ExitCode {
         Verb::Sensitivity(args) => cli::sensitivity::sensitivity(&args),
         Verb::Pst(args) => cli::pst::pst(&args),
         Verb::Glare(args) => cli::glare::glare(&args),
+        Verb::Objects(args) => cli::objects::objects(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::View(args) => cli::view::view(&args),
         Verb::Ray(args) => cli::ray::ray(&args),

@@ -115,15 +115,16 @@ impl Scene {
 
     /// Medium of the innermost of `solids`.
     pub fn medium_in(&self, solids: &Solids) -> u16 {
-        if solids.is_empty() {
-            return self.ambient;
-        }
+        self.innermost(solids).map_or(self.ambient, |solid| self.solids[solid as usize].medium)
+    }
+
+    /// The solid that fills the place where these overlap; `None` in the ambient.
+    pub fn innermost(&self, solids: &Solids) -> Option<u16> {
         let key = |s: u16| (self.solids[s as usize].priority, -self.solids[s as usize].volume);
-        let innermost = solids.iter().max_by(|&a, &b| {
+        solids.iter().max_by(|&a, &b| {
             let ((pa, va), (pb, vb)) = (key(a), key(b));
             pa.cmp(&pb).then(va.total_cmp(&vb)).then(b.cmp(&a))
-        });
-        innermost.map_or(self.ambient, |s| self.solids[s as usize].medium)
+        })
     }
 
     /// Complex index of medium `medium` at vacuum wavelength `wavelength` (m).

@@ -31,7 +31,14 @@ const DOORS: [(&str, &[&str]); 24] = [
     ("colorous", &["report/picture/scale.rs"]),
     (
         "csv",
-        &["coating/tabulated/csv.rs", "report/compare/", "report/paths.rs", "report/pst/", "report/sensitivity.rs"],
+        &[
+            "coating/tabulated/csv.rs",
+            "report/compare/",
+            "report/objects/",
+            "report/paths.rs",
+            "report/pst/",
+            "report/sensitivity.rs",
+        ],
     ),
     ("gltf", &["system/gltf/"]),
     ("indicatif", &["cli/run.rs"]),

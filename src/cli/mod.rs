@@ -11,6 +11,7 @@ pub mod fit;
 pub mod fit_bsdf;
 pub mod glare;
 pub mod import;
+pub mod objects;
 mod optics;
 pub mod pst;
 pub mod ray;
@@ -59,6 +60,8 @@ pub enum Verb {
     Pst(pst::PstArgs),
     /// Trace a uniform field with a black patch: veiling glare index
     Glare(glare::GlareArgs),
+    /// Say what the detectors see and the sources light, and what warm objects send by themselves
+    Objects(objects::ObjectsArgs),
     /// Say what was understood of a system, without tracing it
     Check(check::CheckArgs),
     /// Show a system in 3-D in a browser, with some of its rays, before it is traced

@@ -22,6 +22,7 @@ mod markdown;
 mod measured;
 mod name;
 mod npy;
+pub mod objects;
 mod paths;
 mod picture;
 pub mod problems;

@@ -5,13 +5,14 @@
 
 pub mod angular;
 pub mod extent;
+pub mod planck;
 pub mod seen;
 pub mod spectrum;
 
 pub use angular::Angular;
 pub use extent::{Extent, Spot};
 pub use seen::Reach;
-pub use spectrum::Spectrum;
+pub use spectrum::{Density, Spectrum};
 
 use crate::geometry::{Frame, Ray};
 use crate::optics::Stokes;

@@ -1,5 +1,7 @@
 //! Which wavelengths light has. A band costs no more than a line: every ray draws one vacuum wavelength.
 
+use super::planck::C2;
+
 /// Flux against vacuum wavelength, normalised.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
@@ -22,9 +24,6 @@ pub struct Density {
     cumulative: Vec<f64>,
 }
 
-/// Second radiation constant h c / k_B, m K (CODATA 2018, exact in the SI of 2019 to the digits given).
-const C2: f64 = 1.438_776_877e-2;
-
 impl Spectrum {
     /// Lines with relative powers (> 0 in sum).
     pub fn lines(lines: &[(f64, f64)]) -> Spectrum {
@@ -39,22 +38,12 @@ impl Spectrum {
 
     /// Piecewise linear flux per wavelength: wavelengths (m, rising) with relative weights.
     pub fn table(points: &[(f64, f64)]) -> Spectrum {
-        let (wavelengths, weights): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-        let mut cumulative = vec![0.0];
-        for i in 1..points.len() {
-            let area = 0.5 * (weights[i] + weights[i - 1]) * (wavelengths[i] - wavelengths[i - 1]);
-            cumulative.push(cumulative[i - 1] + area);
-        }
-        Spectrum::Table(Density { wavelengths, weights, cumulative })
+        Spectrum::Table(Density::table(points))
     }
 
-    /// Planck's exitance lambda^-5 / (exp(C2 / (lambda T)) - 1) between `from` and `to` (m), T in K, in 512 linear pieces of equal
-    /// ratio.
+    /// Planck's law between `from` and `to` (m), T in K.
     pub fn black_body(temperature: f64, from: f64, to: f64) -> Spectrum {
-        let planck = |x: f64| x.powi(-5) / (C2 / (x * temperature)).exp_m1();
-        let peak = planck((C2 / (4.965_114 * temperature)).clamp(from, to));
-        let point = |i: usize| from * (to / from).powf(i as f64 / 512.0);
-        Spectrum::table(&(0..=512).map(|i| (point(i), planck(point(i)) / peak)).collect::<Vec<_>>())
+        Spectrum::Table(Density::black_body(temperature, from, to))
     }
 
     /// The wavelength (m) below which the fraction `u` of the flux lies.
@@ -80,9 +69,39 @@ impl Spectrum {
 }
 
 impl Density {
-    /// Inverse of the running integral: in a piece with weights a, b over h, a t + (b - a) t^2 / (2 h) = rest, solved in
+    /// Piecewise linear: wavelengths (m, rising) with relative weights.
+    fn table(points: &[(f64, f64)]) -> Density {
+        let (wavelengths, weights): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        let mut cumulative = vec![0.0];
+        for i in 1..points.len() {
+            let area = 0.5 * (weights[i] + weights[i - 1]) * (wavelengths[i] - wavelengths[i - 1]);
+            cumulative.push(cumulative[i - 1] + area);
+        }
+        Density { wavelengths, weights, cumulative }
+    }
+
+    /// Planck's exitance lambda^-5 / (exp(C2 / (lambda T)) - 1) between `from` and `to` (m), T in K, in 512 linear pieces of equal
+    /// ratio.
+    pub fn black_body(temperature: f64, from: f64, to: f64) -> Density {
+        let planck = |x: f64| x.powi(-5) / (C2 / (x * temperature)).exp_m1();
+        let peak = planck((C2 / (4.965_114 * temperature)).clamp(from, to));
+        let point = |i: usize| from * (to / from).powf(i as f64 / 512.0);
+        Density::table(&(0..=512).map(|i| (point(i), planck(point(i)) / peak)).collect::<Vec<_>>())
+    }
+
+    /// Share of the flux per wavelength, 1/m; within the range.
+    pub fn at(&self, wavelength: f64) -> f64 {
+        let last = self.wavelengths.len() - 1;
+        let piece = self.wavelengths.partition_point(|&x| x <= wavelength).clamp(1, last);
+        let (a, b) = (self.weights[piece - 1], self.weights[piece]);
+        let step = self.wavelengths[piece] - self.wavelengths[piece - 1];
+        let weight = a + (b - a) * (wavelength - self.wavelengths[piece - 1]) / step;
+        weight / self.cumulative[last]
+    }
+
+    /// The wavelength (m) below which the fraction `u` of the flux lies. In a piece with weights a, b over h, a t + (b - a) t^2 / (2 h) = rest, solved in
     /// the form that does not cancel.
-    fn quantile(&self, u: f64) -> f64 {
+    pub fn quantile(&self, u: f64) -> f64 {
         let target = u * self.cumulative[self.cumulative.len() - 1];
         let piece = self.cumulative.partition_point(|&c| c <= target).clamp(1, self.cumulative.len() - 1);
         let (a, b) = (self.weights[piece - 1], self.weights[piece]);

@@ -4,6 +4,7 @@ pub mod assumption;
 pub mod compare;
 pub mod drawing;
 pub mod glare;
+pub mod objects;
 pub mod pst;
 pub mod record;
 pub mod requirement;

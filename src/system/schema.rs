@@ -77,6 +77,7 @@ mod tests {
         fields::<Source>();
         fields::<Sweep>();
         fields::<Glare>();
+        fields::<Thermal>();
         fields::<Mask>();
         options::<Angles>();
         fields::<Detector>();

@@ -250,6 +250,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
         if index.im > 0.0 {
             let lost = -(-absorption(index, packet.wavelength) * distance).exp_m1();
             self.book.absorbed_in_medium(medium, packet.fluxes().map(|f| f * lost));
+            self.watch.dims(&packet.solids, packet.flux() * lost);
             packet.light = packet.light.map(|light| light * (1.0 - lost));
         }
     }

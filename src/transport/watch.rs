@@ -2,7 +2,7 @@
 
 use crate::detector::Arrival;
 use crate::geometry::{Left, Ray};
-use crate::packet::Ancestry;
+use crate::packet::{Ancestry, Solids};
 use glam::DVec3;
 
 /// One event of a watched packet.
@@ -44,6 +44,8 @@ pub trait Watch {
     fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
     /// A packet of this flux (W) is scattered at the origin of the ray on which it came, in a medium. Called before its way is drawn.
     fn scattered(&mut self, _ray: &Ray, _medium: u16, _flux: f64) {}
+    /// So much flux (W) is absorbed on a flight in the innermost of these solids.
+    fn dims(&mut self, _solids: &Solids, _flux: f64) {}
     /// A packet of this flux (W) arrives at a detector. Called before what is there acts on it.
     fn arrives(&mut self, _detector: usize, _arrival: &Arrival, _flux: f64) {}
     /// A packet left the scene.

@@ -11,6 +11,7 @@ mod figure;
 mod ledger;
 mod light;
 mod number;
+mod objects;
 mod overview;
 mod paths;
 mod pst;
@@ -20,6 +21,7 @@ mod sheet;
 mod view;
 
 use crate::study::compare::Comparison;
+use crate::study::objects::Objects;
 use crate::tally::drawing::Drawing;
 use crate::tally::results::{Results, RunInfo};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -65,6 +67,11 @@ fn three(drawing: &Drawing) -> Markup {
 /// The page of a comparison.
 pub fn comparison(comparison: &Comparison, run: &RunInfo) -> String {
     whole(&comparison.system, &compare::body(comparison, run))
+}
+
+/// The page of critical and illuminated objects.
+pub fn objects(found: &Objects, run: &RunInfo) -> String {
+    whole(&found.system, &objects::body(found, run))
 }
 
 fn whole(system: &str, body: &Markup) -> String {

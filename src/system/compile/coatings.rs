@@ -5,6 +5,7 @@
 //! medium it stands; and on a cemented face the stack is counted from the outside of the solid that has the coating.
 
 use super::Shop;
+use super::lights::Light;
 use super::media::{self, load};
 use crate::coating::tabulated::{self, MIRROR, Tabulated};
 use crate::coating::{self, Coating, Side, Stack, zemax};
@@ -12,7 +13,6 @@ use crate::error::Problem;
 use crate::medium::{Medium, agf};
 use crate::optics::stack::End;
 use crate::scene::Filling;
-use crate::source::Source;
 use crate::system::document as written;
 use crate::system::units::Wavelength;
 use num_complex::Complex64;
@@ -223,18 +223,17 @@ fn made(shop: &mut Shop, table: Result<Tabulated, Problem>, path: &str) -> Optio
 }
 
 /// Notes coatings from files and tables whose data end before the light of the sources does.
-pub fn ranges(shop: &mut Shop, coatings: &Coatings, sources: &[Source]) {
+pub fn ranges(shop: &mut Shop, coatings: &Coatings, lights: &[Light]) {
     let document = shop.document;
     for (name, written) in document.system.coatings.iter() {
         let own = matches!(written, written::Coating::Table { .. } | written::Coating::Zemax { .. });
         let range = coatings.get(name).filter(|_| own).and_then(|faces| faces[0].range());
         let Some([low, high]) = range else { continue };
-        for source in sources {
-            let light = source.spectrum.range();
+        for Light { label, range: light } in lights {
             // The rounding of wavelengths that are typed in other units.
             if light[0] < low * (1.0 - 1e-6) || light[1] > high * (1.0 + 1e-6) {
                 let nm = |m: f64| (m * 1e10).round() / 10.0;
-                let what = format!("the data of coating `{name}` do not cover the light of `{}`", source.label);
+                let what = format!("the data of coating `{name}` do not cover the light of `{label}`");
                 let expected = format!("wavelengths from {} nm to {} nm", nm(low), nm(high));
                 shop.fault(&format!("coatings[{name:?}]"), Problem::error(what).expecting(expected));
             }

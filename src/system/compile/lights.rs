@@ -13,6 +13,21 @@ use crate::system::document as written;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
+/// The wavelengths of some light, by its name.
+#[derive(Clone, Debug)]
+pub struct Light {
+    pub label: String,
+    /// Least and greatest vacuum wavelength, m.
+    pub range: [f64; 2],
+}
+
+impl Light {
+    /// That of a source.
+    pub fn of(source: &Source) -> Light {
+        Light { label: source.label.clone(), range: source.spectrum.range() }
+    }
+}
+
 /// Every source of the document.
 pub fn sources(shop: &mut Shop, assembly: &Assembly) -> Vec<Source> {
     let document = shop.document;

@@ -20,6 +20,7 @@ mod scatter;
 mod scatterer;
 mod sweep;
 mod targets;
+mod thermal;
 pub mod understanding;
 pub mod variants;
 
@@ -30,11 +31,11 @@ use crate::error::{Error, Problem, Severity, did_you_mean};
 use crate::geometry::Bvh;
 use crate::scene::{Part, PartKind, Scene};
 use crate::settings::{Guidance, Roulette, Settings, Trace, Until};
-use crate::source::Source;
 use assembly::Assembly;
 pub use coated::{Coated, coated};
 use glam::DVec3;
 pub use glare::Glare;
+use lights::Light;
 pub use mask::Mask;
 pub use parts::{parts_of_file, parts_of_system};
 pub use requirements::Requirement;
@@ -43,6 +44,7 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 pub use sweep::Sweep;
+pub use thermal::Thermal;
 pub use understanding::Understanding;
 
 /// A system ready to be traced.
@@ -63,6 +65,8 @@ pub struct Compiled {
     pub glare: Vec<Glare>,
     /// What is required of the stray light on detectors.
     pub requirements: Vec<Requirement>,
+    /// How warm everything is, if anything is said of it.
+    pub thermal: Option<Thermal>,
 }
 
 /// The workshop: the document, and what is found wrong on the way.
@@ -117,6 +121,19 @@ pub fn compile(document: &Document) -> Result<Compiled, Error> {
     Ok(build(document)?.0)
 }
 
+/// The same for what is asked from the detectors: things that are warm are light enough, and there may be no sources.
+pub fn compile_warm(document: &Document) -> Result<Compiled, Error> {
+    Ok(build_for(document, Need::Warmth)?.0)
+}
+
+/// What there must be for there to be light.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Need {
+    Sources,
+    /// Sources, or temperatures.
+    Warmth,
+}
+
 /// Compiles a document and says what was understood of it.
 pub fn understand(document: &Document) -> Result<(Compiled, Understanding), Error> {
     let (compiled, assembly) = build(document)?;
@@ -148,6 +165,10 @@ pub fn geometry(document: &Document) -> Result<Placed, Error> {
 }
 
 fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
+    build_for(document, Need::Sources)
+}
+
+fn build_for(document: &Document, need: Need) -> Result<(Compiled, Assembly), Error> {
     let mut shop = Shop::new(document, document.warnings.clone());
     let system_file = document.path.file_name().map_or("system".into(), |name| name.to_string_lossy().into_owned());
     shop.inputs.insert(system_file, document.sha256.clone());
@@ -164,12 +185,17 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let sweeps = sweep::sweeps(&mut shop, &assembly, &watched, &mut sources);
     let glare = glare::glare(&mut shop, &assembly, &watched);
     let requirements = requirements::requirements(&mut shop, &watched);
-    let lit: Vec<Source> = sources.iter().chain(glare.iter().flat_map(|glare| &glare.sources)).cloned().collect();
-    coatings::ranges(&mut shop, &coatings, &lit);
-    if !lit.is_empty() {
-        scatter::ranges(&mut shop, &lit);
+    let thermal = thermal::thermal(&mut shop, &assembly, assigned.parts.len(), assigned.solids.len());
+    let glow = thermal.as_ref().map(|thermal| Light { label: "thermal".into(), range: thermal.band });
+    let lights: Vec<Light> = sources.iter().map(Light::of).chain(glow).collect();
+    let fields = glare.iter().flat_map(|glare| glare.sources.iter().map(Light::of));
+    let all: Vec<Light> = lights.iter().cloned().chain(fields).collect();
+    coatings::ranges(&mut shop, &coatings, &all);
+    if !all.is_empty() {
+        scatter::ranges(&mut shop, &all);
     }
-    if sources.is_empty() && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
+    let dark = sources.is_empty() && (need == Need::Sources || document.system.thermal.is_none());
+    if dark && shop.problems.iter().all(|p| p.severity == Severity::Warning) {
         shop.fault("sources", Problem::error("nothing shines").expecting("at least one source"));
     }
     let mut parts: Vec<Part> = assigned.parts;
@@ -198,7 +224,7 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         has_optics,
     };
     let settings = settings(document);
-    shop.problems.extend(understanding::doubts(&scene, &assembly, document));
+    shop.problems.extend(understanding::doubts(&scene, &assembly, document, &lights));
     let Shop { problems, inputs, .. } = shop;
     if problems.iter().any(|problem| problem.severity == Severity::Error) {
         return Err(Error::Input(problems));
@@ -206,7 +232,18 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
     let parameters = document.parameters.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect();
     let finishes = scatter::assumptions(document);
     Ok((
-        Compiled { scene, settings, warnings: problems, inputs, parameters, finishes, sweeps, glare, requirements },
+        Compiled {
+            scene,
+            settings,
+            warnings: problems,
+            inputs,
+            parameters,
+            finishes,
+            sweeps,
+            glare,
+            requirements,
+            thermal,
+        },
         assembly,
     ))
 }

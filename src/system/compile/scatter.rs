@@ -1,6 +1,7 @@
 //! Scatter models: from what the document says to the lobes that light meets.
 
 use super::Shop;
+use super::lights::Light;
 use super::media::{self, load};
 use crate::bsdf::contamination::{Deposit, distribution};
 use crate::bsdf::klems::{Face, Matrix};
@@ -10,7 +11,6 @@ use crate::coating::Side;
 use crate::error::{Problem, Span};
 use crate::medium;
 use crate::optics::Incidence;
-use crate::source::Source;
 use crate::system::document as written;
 use crate::system::units::{Frequency, PowerDensity};
 use glam::DVec2;
@@ -191,11 +191,11 @@ pub fn assumptions(document: &written::Document) -> Vec<String> {
 }
 
 /// Notes finishes of the library that are used beyond the wavelengths for which they hold.
-pub fn ranges(shop: &mut Shop, sources: &[Source]) {
+pub fn ranges(shop: &mut Shop, lights: &[Light]) {
     let document = shop.document;
     for (name, written) in document.system.scatter.iter() {
-        let low = sources.iter().map(|source| source.spectrum.range()[0]).fold(f64::INFINITY, f64::min);
-        let high = sources.iter().map(|source| source.spectrum.range()[1]).fold(0.0, f64::max);
+        let low = lights.iter().map(|light| light.range[0]).fold(f64::INFINITY, f64::min);
+        let high = lights.iter().map(|light| light.range[1]).fold(0.0, f64::max);
         let doubts = written.finishes().into_iter().filter_map(|finish| finish.doubt([low, high]));
         doubts.for_each(|doubt| shop.fault(&format!("scatter[{name:?}]"), doubt));
     }

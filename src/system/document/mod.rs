@@ -29,6 +29,7 @@ mod stack;
 mod surface;
 mod sweep;
 mod target;
+mod thermal;
 mod tree;
 mod variant;
 
@@ -52,6 +53,7 @@ pub use stack::{Layer, Thickness};
 pub use surface::{ExtrasValue, Finish, Gap, Order, Predicate, Scattering, Selector, Side, Surface, default_smooth};
 pub use sweep::{Angles, Mask, Sweep, degrees};
 pub use target::Target;
+pub use thermal::Thermal;
 pub use variant::{Bracket, Level};
 
 use crate::error::{Error, Problem, Span};
@@ -99,6 +101,8 @@ pub struct System {
     pub sweeps: Names<Sweep>,
     /// Fields with a black patch by name.
     pub glare: Names<Glare>,
+    /// How warm things are.
+    pub thermal: Option<Thermal>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
     /// What is required of the stray light on them, by name.
@@ -116,7 +120,8 @@ impl System {
     pub fn spectra(&self) -> impl Iterator<Item = &Spectrum> {
         let sources = self.sources.iter().map(|(_, source)| &source.spectrum);
         let sweeps = self.sweeps.iter().map(|(_, sweep)| &sweep.spectrum);
-        sources.chain(sweeps).chain(self.glare.iter().map(|(_, glare)| &glare.spectrum))
+        let fields = self.glare.iter().map(|(_, glare)| &glare.spectrum);
+        sources.chain(sweeps).chain(fields).chain(self.thermal.iter().map(|thermal| &thermal.band))
     }
 }
 

@@ -22,18 +22,19 @@
 //! The ledger is that of the forward rays. Light lost on the way backwards is summed apart.
 
 pub(super) mod connect;
+pub mod look;
 pub(super) mod reverse;
 
 use super::book::Book;
 use super::importance::scout::shining;
 use super::importance::{Importance, Lit};
 use super::walk::Walk;
-use super::watch::Unwatched;
+use super::watch::{Unwatched, Watch};
 use crate::detector::Arrival;
 use crate::math::Rng;
 use crate::math::lowdiscrepancy::Block;
 use crate::math::rng::mix;
-use crate::packet::{Ancestry, Event};
+use crate::packet::{Ancestry, Event, Packet};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::source::{Birth, Reach, Source, Spectrum};
@@ -70,6 +71,11 @@ pub struct Trail<'a> {
     pub arrival: Arrival,
     /// Sources that have its wavelength.
     pub sources: &'a [u16],
+}
+
+/// One of `count` things, by a coordinate in 0..1.
+fn choose(u: f64, count: usize) -> usize {
+    ((u * count as f64) as usize).min(count - 1)
 }
 
 impl Backward {
@@ -136,23 +142,35 @@ impl Backward {
         share: u64,
         u: &mut dyn FnMut(u32) -> f64,
     ) {
-        let choose = |u: f64, count: usize| ((u * count as f64) as usize).min(count - 1);
         let sides = &self.detectors[detector];
         let source = &sides[choose(u(5), sides.len())];
         let group = &self.groups[choose(u(6), self.groups.len())];
         let (mut birth, weight) = self.birth(detector, source, u);
         birth.wavelength = group.spectrum.wavelength(u(4));
-        let wavelength = birth.wavelength;
-        let triangle = birth.from.map(|(triangle, _)| triangle);
-        let arrival = Arrival { point: birth.ray.origin, direction: -birth.ray.direction, wavelength, triangle };
-        let rng = Rng::new(walk.seed, history, 1);
-        let mut packet = walk.born(source, (0, history), birth, 1.0, rng);
-        let index = walk.scene.index(walk.scene.medium_in(&packet.solids), wavelength).re;
+        let (mut packet, index) = self.sets_off(walk, source, birth, (detector, history), &group.sources);
         let etendue = PI * index * index * source.extent.area() * (sides.len() * self.groups.len()) as f64;
         packet.light = packet.light.map(|light| light * (weight * etendue / share as f64));
-        walk.trail = Some(Trail { backward: self, detector, arrival, sources: &group.sources });
         walk.book.unit = Some(1.0 / etendue);
         walk.history(&mut packet);
+    }
+
+    /// A ray of unit flux at its start on a side of a detector, and the index there; the walk follows it backwards, and asks `sources`.
+    fn sets_off<'a, const V: usize, W: Watch>(
+        &'a self,
+        walk: &mut Walk<'a, V, W>,
+        side: &Source,
+        birth: Birth,
+        (detector, history): (usize, u64),
+        sources: &'a [u16],
+    ) -> (Packet<V>, f64) {
+        let triangle = birth.from.map(|(triangle, _)| triangle);
+        let Birth { ray, wavelength, .. } = &birth;
+        let arrival = Arrival { point: ray.origin, direction: -ray.direction, wavelength: *wavelength, triangle };
+        let rng = Rng::new(walk.seed, history, 1);
+        let packet = walk.born(side, (0, history), birth, 1.0, rng);
+        let index = walk.scene.index(walk.scene.medium_in(&packet.solids), packet.wavelength).re;
+        walk.trail = Some(Trail { backward: self, detector, arrival, sources });
+        (packet, index)
     }
 
     /// A ray sets off evenly in étendue, or to where light came from; and its weight.

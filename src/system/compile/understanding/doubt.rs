@@ -7,8 +7,8 @@ use crate::detector::Place;
 use crate::error::Problem;
 use crate::geometry::Hit;
 use crate::scene::{Filling, PartKind, Scene};
-use crate::source::Source;
 use crate::system::compile::assembly::Assembly;
+use crate::system::compile::lights::Light;
 use crate::system::document::Document;
 use glam::DVec3;
 use num_complex::Complex64;
@@ -22,12 +22,17 @@ const DISPARITY: f64 = 1000.0;
 const ROUNDING: f64 = 1e-6;
 
 /// All of them, errors and warnings.
-pub(in crate::system::compile) fn doubts(scene: &Scene, assembly: &Assembly, document: &Document) -> Vec<Problem> {
+pub(in crate::system::compile) fn doubts(
+    scene: &Scene,
+    assembly: &Assembly,
+    document: &Document,
+    lights: &[Light],
+) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut note = |path: &str, problem: Problem| problems.push(document.problem(path, problem));
     sizes(assembly, &mut note);
-    ranges(scene, document, &mut note);
-    energy(scene, document, &mut note);
+    ranges(scene, document, lights, &mut note);
+    energy(scene, document, lights, &mut note);
     contradictions(scene, &mut note);
     enclosed(scene, assembly, &mut note);
     problems
@@ -65,25 +70,25 @@ fn sizes(assembly: &Assembly, note: Note) {
 }
 
 /// Media that light meets, with data that end before the sources' wavelengths do.
-fn ranges(scene: &Scene, document: &Document, note: Note) {
+fn ranges(scene: &Scene, document: &Document, lights: &[Light], note: Note) {
     let mut used: BTreeSet<u16> = uses(scene).into_iter().flat_map(|(_, media)| media).collect();
     let coated = document.system.coatings.iter().flat_map(|(_, coating)| coating.media());
     let place = |name: &str| scene.media.iter().position(|filling| filling.label == *name);
     used.extend(coated.filter_map(place).map(|medium| medium as u16));
     for filling in used.iter().map(|&medium| &scene.media[medium as usize]) {
-        for problem in scene.sources.iter().filter_map(|source| uncovered(filling, source)) {
+        for problem in lights.iter().filter_map(|light| uncovered(filling, light)) {
             note(&format!("media[{:?}]", filling.label), problem);
         }
     }
 }
 
-/// What the data of a medium lack of the light of a source.
-fn uncovered(filling: &Filling, source: &Source) -> Option<Problem> {
-    let (medium, light) = (&filling.medium, source.spectrum.range());
+/// What the data of a medium lack of some light.
+fn uncovered(filling: &Filling, light: &Light) -> Option<Problem> {
+    let (medium, label, light) = (&filling.medium, &light.label, light.range);
     let nanometres = |m: f64| format!("{} nm", (m * 1e10).round() / 10.0);
     let span = |[from, to]: [f64; 2]| format!("{} to {}", nanometres(from), nanometres(to));
     let beyond = |[low, high]: &[f64; 2]| light[0] < low * (1.0 - ROUNDING) || light[1] > high * (1.0 + ROUNDING);
-    let lit = format!("the light of `{}`: {}", source.label, span(light));
+    let lit = format!("the light of `{label}`: {}", span(light));
     if let Some(range) = medium.range().filter(beyond) {
         let what = format!("the data of `{}` do not cover {lit}", filling.label);
         return Some(Problem::error(what).expecting(format!("wavelengths from {}", span(range))));
@@ -100,8 +105,8 @@ fn uncovered(filling: &Filling, source: &Source) -> Option<Problem> {
 }
 
 /// Surfaces that send off more than arrives, at 0, 5, .., 85 deg and at grazing incidence.
-fn energy(scene: &Scene, document: &Document, note: Note) {
-    let ranges = scene.sources.iter().flat_map(|source| source.spectrum.range());
+fn energy(scene: &Scene, document: &Document, lights: &[Light], note: Note) {
+    let ranges = lights.iter().flat_map(|light| light.range);
     let mut wavelengths: Vec<f64> = ranges.collect();
     wavelengths.sort_by(f64::total_cmp);
     wavelengths.dedup();

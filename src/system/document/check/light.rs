@@ -8,7 +8,9 @@ use crate::system::units::{Direction, Wavelength};
 impl Checker<'_> {
     pub(super) fn sources(&mut self) {
         let document = self.document;
-        let none = self.defined("sources").is_empty() && self.defined("sweeps").is_empty();
+        let dark = self.defined("sources").is_empty() && self.defined("sweeps").is_empty();
+        // What is warm shines by itself.
+        let none = dark && document.system.thermal.is_none();
         self.require(!none, "sources", || {
             Problem::error("the system has no light source").expecting("`sources: {..}`")
         });

@@ -9,6 +9,7 @@ mod optics;
 mod requirement;
 mod scatter;
 mod sweep;
+mod thermal;
 
 use super::tree::Shape;
 use super::{About, Body, Document, Run, read, variant};
@@ -79,6 +80,7 @@ impl Document {
         checker.sources();
         checker.sweeps();
         checker.glare();
+        checker.thermal();
         checker.detectors();
         checker.requirements();
         checker.targets();
