@@ -11,7 +11,7 @@ const LAYERS: [&[&str]; 12] = [
     &["film", "import"],
     &["medium"],
     &["coating", "bsdf", "packet", "source", "detector", "aim"],
-    &["surface", "tally"],
+    &["surface", "tally", "filter"],
     &["scene"],
     &["system", "transport"],
     &["study"],
@@ -34,6 +34,7 @@ const DOORS: [(&str, &[&str]); 24] = [
         &[
             "coating/tabulated/csv.rs",
             "report/compare/",
+            "report/ghosts/",
             "report/objects/",
             "report/paths.rs",
             "report/pst/",

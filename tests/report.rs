@@ -10,8 +10,8 @@ use straylight::report;
 use straylight::tally::drawing::{Drawing, DrawnPart, Way};
 use straylight::tally::required::Required;
 use straylight::tally::results::{
-    Axis, Convergence, DetectorResult, Estimate, GuidanceResult, LedgerResult, MapKind, MapResult, PathResult, Peak,
-    RequirementResult, Results, RunInfo, Stage, StrayResult,
+    Axis, Convergence, DetectorResult, Estimate, FilterResult, GuidanceResult, LedgerResult, MapKind, MapResult,
+    PathResult, Peak, RequirementResult, Results, RunInfo, Stage, StrayResult,
 };
 
 fn estimate(mean: f64, error: f64) -> Estimate {
@@ -40,6 +40,7 @@ fn map(
     let rays: Vec<u64> = mean.iter().map(|mean| (mean * 4e2).ceil() as u64).collect();
     MapResult {
         detector: detector.into(),
+        filter: None,
         kind,
         shape,
         axes,
@@ -210,6 +211,25 @@ fn paths() -> Vec<PathResult> {
     rows
 }
 
+/// Scatter at the barrel in the lower half of the focal plane, and a little that came on paths too long to be spelled.
+fn filtered() -> FilterResult {
+    let whole = focal_plane();
+    let mean =
+        whole.mean.iter().enumerate().map(|(bin, mean)| if bin < 128 * 256 { 0.1 * mean } else { 0.0 }).collect();
+    FilterResult {
+        filter: "off the barrel".into(),
+        expression: "sun > ... > Barrel*:S > ... > fpa".into(),
+        detector: "fpa".into(),
+        flux_w: estimate(2.91e-3, 3.1e-5),
+        percent: 0.3236,
+        rays: 21_208,
+        upper_limit_w: None,
+        open_w: estimate(1.2e-9, 4.0e-10),
+        peak_w_m2: Peak { mean: 2.4e2, error: 31.0, pixel: [70, 150] },
+        map: MapResult { filter: Some("off the barrel".into()), mean, ..whole },
+    }
+}
+
 fn results() -> Results {
     Results {
         system: "Cooke triplet f/4 in a black barrel".into(),
@@ -251,6 +271,7 @@ fn results() -> Results {
         finishes: vec!["generic black paint: generic, not measured".into()],
         requirements: requirements(),
         assumptions: vec![["Band".into(), "550 nm (vacuum)".into()], ["Left out".into(), "diffraction".into()]],
+        filters: vec![filtered()],
         importance: Some(GuidanceResult {
             used: true,
             gain: 12.6,
@@ -361,8 +382,9 @@ fn a_report_is_complete_and_leaves_nothing_else() {
     let mut told = written.clone();
     told.sort();
     assert_eq!(found, told);
-    assert_eq!(written.len(), 5 * 4 + 3);
+    assert_eq!(written.len(), 6 * 4 + 3);
     assert!(dir.join("dome_inner_error.npy").exists() && dir.join("far_field.fits").exists());
+    assert!(dir.join("fpa_off_the_barrel.fits").exists());
     assert!(written.last().unwrap().ends_with("summary.json"));
 }
 
@@ -381,6 +403,7 @@ fn the_summary_reads_back_with_results_and_run() {
     let summary: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["results"]["detectors"]["fpa"]["classes"]["signal"]["mean"], 0.893_21);
     assert_eq!(summary["results"]["ledger_w"]["emitted"]["mean"], 1.0);
+    assert_eq!(summary["results"]["filters"][0]["flux_w"]["mean"], 2.91e-3);
     assert_eq!(summary["run"]["threads"], 16);
 }
 
@@ -399,6 +422,8 @@ fn the_page_asks_for_nothing_and_names_everything() {
         "60303ae22b998861",
         "lower left corner",
         "No ray arrived",
+        "sun &gt; ... &gt; Barrel*:S &gt; ... &gt; fpa",
+        "paths of more than 24 steps",
         "--seed 20260412",
     ] {
         assert!(page.contains(word), "{word}");
@@ -414,6 +439,8 @@ fn the_terminal_hears_the_key_numbers_with_their_errors() {
         "guide port: < 2.9e-9 W",
         "far field: 0.02267 ± 0.00015 W",
         "The ledger closes",
+        "filter \"off the barrel\": 0.002910 ± 0.000031 W, 0.32 %  (sun > ... > Barrel*:S > ... > fpa)",
+        "! 1.20e-9 ± 0.40e-9 W more may be meant",
         "warning: Baffle_2",
     ] {
         assert!(text.contains(word), "{word} in\n{text}");
@@ -436,6 +463,7 @@ fn an_empty_run_is_reported_without_panic() {
         detectors: BTreeMap::new(),
         ledger_w: LedgerResult::default(),
         absorbed_w: BTreeMap::new(),
+        filters: Vec::new(),
         paths: Vec::new(),
         maps: Vec::new(),
         ..results()

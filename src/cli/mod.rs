@@ -9,6 +9,7 @@ pub mod export;
 pub mod finishes;
 pub mod fit;
 pub mod fit_bsdf;
+pub mod ghosts;
 pub mod glare;
 pub mod import;
 pub mod objects;
@@ -58,6 +59,8 @@ pub enum Verb {
     Sensitivity(sensitivity::SensitivityArgs),
     /// Trace the sweeps of a system: point source transmittance over angle, against what is required
     Pst(pst::PstArgs),
+    /// Trace every ghost by itself, by the pair of surfaces that makes it: flux, peak, size, focus
+    Ghosts(ghosts::GhostsArgs),
     /// Trace a uniform field with a black patch: veiling glare index
     Glare(glare::GlareArgs),
     /// Say what the detectors see and the sources light, and what warm objects send by themselves

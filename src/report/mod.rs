@@ -17,6 +17,7 @@ mod cause;
 pub mod compare;
 mod digest;
 mod fits;
+pub mod ghosts;
 mod html;
 mod markdown;
 mod measured;

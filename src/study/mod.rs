@@ -3,6 +3,7 @@
 pub mod assumption;
 pub mod compare;
 pub mod drawing;
+pub mod ghost;
 pub mod glare;
 pub mod objects;
 pub mod pst;

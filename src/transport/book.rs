@@ -94,6 +94,7 @@ impl<'a, const V: usize> Book<'a, V> {
         let watched = &scene.detectors[detector];
         let grid = &watched.grid;
         let Some(bin) = grid.bin(arrival) else { return };
+        let ancestry = &*scene.ending(detector, ancestry);
         let Some(rows) = self.rows else {
             return self.candidates.note(detector, ancestry, flux.into_iter().fold(0.0, f64::max));
         };
@@ -103,19 +104,12 @@ impl<'a, const V: usize> Book<'a, V> {
         self.live.add(self.layout.class(detector, class), flux);
         self.live.add(self.layout.source(detector, source), flux);
         self.live.add(self.layout.source_class(detector, source, class), flux);
-        let response = watched.response.of(arrival.wavelength);
-        let counted = flux.map(|flux| flux * response);
-        self.live.add(self.layout.counted(detector), counted);
-        self.live.add(self.layout.bin(detector, bin), counted);
-        let place = if watched.regions.is_empty() { None } else { grid.place(arrival.point) };
-        let inside = |region: &Region| place.is_some_and(|place| region.holds(place));
-        for region in (0..watched.regions.len()).filter(|&region| inside(&watched.regions[region])) {
-            self.live.add(self.layout.region(detector, region), counted);
-        }
         if ancestry.class() != scene.image() {
-            self.layout.stray_bin(detector, bin).into_iter().for_each(|slot| self.live.add(slot, counted));
             self.layout.stray(detector).into_iter().for_each(|slot| self.events(detector, slot, ancestry, flux));
         }
+        let response = watched.response.of(arrival.wavelength);
+        self.mapped(scene, (detector, bin), ancestry, flux.map(|flux| flux * response), arrival);
+        self.filtered(scene, (detector, bin), ancestry, flux, response);
         match rows.find(detector, ancestry.key) {
             None => self.live.add(self.layout.other(detector), flux),
             Some(row) => {
@@ -126,10 +120,54 @@ impl<'a, const V: usize> Book<'a, V> {
         }
     }
 
+    /// What a detector counts of light in a bin, in its own unit: as a whole, on the map and in regions.
+    fn mapped(
+        &mut self,
+        scene: &Scene,
+        (detector, bin): (usize, usize),
+        ancestry: &Ancestry,
+        counted: [f64; V],
+        arrival: &Arrival,
+    ) {
+        let watched = &scene.detectors[detector];
+        self.live.add(self.layout.counted(detector), counted);
+        self.live.add(self.layout.bin(detector, bin), counted);
+        if ancestry.class() != scene.image() {
+            self.layout.stray_bin(detector, bin).into_iter().for_each(|slot| self.live.add(slot, counted));
+        }
+        let place = if watched.regions.is_empty() { None } else { watched.grid.place(arrival.point) };
+        let inside = |region: &Region| place.is_some_and(|place| region.holds(place));
+        for region in (0..watched.regions.len()).filter(|&region| inside(&watched.regions[region])) {
+            self.live.add(self.layout.region(detector, region), counted);
+        }
+    }
+
+    /// Light in a bin of a detector that filters mean, or may mean; a watt counts as `response` on the map.
+    fn filtered(
+        &mut self,
+        scene: &Scene,
+        (detector, bin): (usize, usize),
+        ancestry: &Ancestry,
+        flux: [f64; V],
+        response: f64,
+    ) {
+        for (number, filter) in scene.filters.iter().enumerate() {
+            match filter.accepts(detector, ancestry) {
+                Some(false) => {}
+                Some(true) => {
+                    self.live.add(self.layout.filter(detector, number), flux);
+                    let counted = flux.map(|flux| flux * response);
+                    self.live.add(self.layout.filter_bin(detector, number, bin), counted);
+                }
+                None => self.live.add(self.layout.filter_open(detector, number), flux),
+            }
+        }
+    }
+
     /// Stray light and what happened on its way, once for every time that it did.
     fn events(&mut self, detector: usize, stray: usize, ancestry: &Ancestry, flux: [f64; V]) {
         self.live.add(stray, flux);
-        if ancestry.events as usize > ancestry.steps.len() {
+        if !ancestry.is_spelled() {
             self.live.add(stray + 1, flux);
         }
         for step in &ancestry.steps {

@@ -150,7 +150,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
 
     fn follow(&mut self, packet: &mut Packet<V>) {
         while self.survives(packet) {
-            self.watch.follows(&packet.ancestry);
+            self.watch.follows(&packet.ancestry, packet.flux());
             let goes_on = match &packet.film {
                 Some(film) => self.meet(packet, film.next()),
                 None => match self.fly(packet) {

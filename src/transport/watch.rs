@@ -38,8 +38,8 @@ pub struct Sight {
 pub trait Watch {
     /// A packet sets off from what it has left.
     fn flight(&mut self, _ray: &Ray, _left: &Left) {}
-    /// The packet that the next event or escape is about.
-    fn follows(&mut self, _ancestry: &Ancestry) {}
+    /// The packet of this flux (W) that the next event, arrivals or escape are about.
+    fn follows(&mut self, _ancestry: &Ancestry, _flux: f64) {}
     /// A surface event. Called before branches are drawn.
     fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
     /// A packet of this flux (W) is scattered at the origin of the ray on which it came, in a medium. Called before its way is drawn.

@@ -99,7 +99,7 @@ impl Follower<'_> {
 }
 
 impl Watch for Follower<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         let branch = (ancestry.history, ancestry.events, ancestry.key);
         if self.branch != branch {
             self.branch = branch;

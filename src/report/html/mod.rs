@@ -8,6 +8,7 @@ mod compare;
 mod convergence;
 mod cutaway;
 mod figure;
+mod ghosts;
 mod ledger;
 mod light;
 mod number;
@@ -21,6 +22,7 @@ mod sheet;
 mod view;
 
 use crate::study::compare::Comparison;
+use crate::study::ghost::Ghosts;
 use crate::study::objects::Objects;
 use crate::tally::drawing::Drawing;
 use crate::tally::results::{Results, RunInfo};
@@ -72,6 +74,11 @@ pub fn comparison(comparison: &Comparison, run: &RunInfo) -> String {
 /// The page of critical and illuminated objects.
 pub fn objects(found: &Objects, run: &RunInfo) -> String {
     whole(&found.system, &objects::body(found, run))
+}
+
+/// The page of a study of ghosts.
+pub fn ghosts(ghosts: &Ghosts, run: &RunInfo) -> String {
+    whole(&ghosts.system, &ghosts::body(ghosts, run))
 }
 
 fn whole(system: &str, body: &Markup) -> String {

@@ -87,7 +87,7 @@ impl Pen<'_> {
 }
 
 impl Watch for Pen<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         let now = Some((ancestry.source, ancestry.history, ancestry.class()));
         if self.now != now {
             self.lift();

@@ -88,7 +88,7 @@ impl<'a> Glow<'a> {
 }
 
 impl Watch for Glow<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         if self.history.replace(ancestry.history) != Some(ancestry.history) {
             self.live.next_ray();
         }

@@ -57,7 +57,7 @@ impl Lamp {
 }
 
 impl Watch for Lamp {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         self.way = Way::of(ancestry);
         if self.history.replace(ancestry.history) != Some(ancestry.history) {
             self.live.next_ray();

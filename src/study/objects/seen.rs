@@ -75,7 +75,7 @@ impl<'a> Eye<'a> {
 }
 
 impl Watch for Eye<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         self.way = Way::of(ancestry);
         if self.history.replace(ancestry.history) != Some(ancestry.history) {
             self.live.next_ray();

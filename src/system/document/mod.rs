@@ -107,6 +107,8 @@ pub struct System {
     pub detectors: Names<Detector>,
     /// What is required of the stray light on them, by name.
     pub requirements: Names<Requirement>,
+    /// Expressions that choose light by its path, by name: see [`filter`](crate::filter).
+    pub filters: Names<String>,
     /// What surfaces may aim at, by name.
     pub targets: Names<Target>,
     /// How it is traced.

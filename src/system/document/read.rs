@@ -34,6 +34,7 @@ pub const SECTIONS: &[&str] = &[
     "thermal",
     "detectors",
     "requirements",
+    "filters",
     "targets",
     "run",
 ];
@@ -86,6 +87,7 @@ impl<'a> Reader<'a> {
             thermal: self.single(root, "thermal"),
             detectors: self.map(root, "detectors"),
             requirements: self.map(root, "requirements"),
+            filters: self.map(root, "filters"),
             targets: self.map(root, "targets"),
             run: self.single(root, "run").unwrap_or_default(),
             level: Level::default(),

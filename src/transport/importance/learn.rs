@@ -289,7 +289,7 @@ struct Lantern<'a> {
 }
 
 impl Watch for Lantern<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         (self.source, self.scatters) = (ancestry.source, ancestry.scatters);
     }
 

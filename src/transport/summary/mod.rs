@@ -1,7 +1,9 @@
 //! From slots to results: names, units, errors.
 
+mod maps;
+mod rows;
+
 use super::Counts;
-use super::book::coarse_cell;
 use super::paths::Row;
 use crate::detector::Detector;
 use crate::math::statistics::{student95, variance_of_variance};
@@ -11,6 +13,7 @@ use crate::settings::Settings;
 use crate::tally::layout::{Cut, Loss, PATH_GRID};
 use crate::tally::results::*;
 use crate::tally::{Layout, Sums, series};
+pub use maps::empty_map;
 use std::collections::BTreeMap;
 
 /// Bins fed by fewer source rays than this are not resolved: their error bar is itself a guess.
@@ -74,8 +77,9 @@ pub fn results<const V: usize>(
         assumptions: Vec::new(),
         importance: counts.guidance.clone(),
         path_grid: PATH_GRID,
+        filters: (0..scene.detectors.len()).flat_map(|d| teller.filters(d)).collect(),
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
-        maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),
+        maps: (0..scene.detectors.len()).map(|d| teller.stray_and_all(d)).collect(),
         drawing: None,
     }
 }
@@ -200,7 +204,7 @@ impl<const V: usize> Teller<'_, V> {
             interval95_w: flux_w.error * student95(self.sums().batches),
             rays,
             upper_limit_w: (rays == 0).then(|| self.upper()),
-            peak_w_m2: self.peak(d),
+            peak_w_m2: self.peak(d, &|bin| layout.bin(d, bin)),
             unit: self.scene.detectors[d].unit().into(),
             counted: self.counted(d),
             regions: self.regions(d),
@@ -243,157 +247,5 @@ impl<const V: usize> Teller<'_, V> {
     fn upper(&self) -> f64 {
         let rays = (self.sums().batches * self.counts.batch_rays) as f64;
         3.0 * self.scene.sources.iter().map(|s| s.flux).sum::<f64>() / rays
-    }
-
-    /// What the detector counts where that is not all watts.
-    fn counted(&self, d: usize) -> Option<CountedResult> {
-        let response = &self.scene.detectors[d].response;
-        let total = self.estimate(self.counts.layout.counted(d));
-        (!response.is_flux()).then(|| CountedResult { unit: response.unit().into(), total })
-    }
-
-    fn regions(&self, d: usize) -> BTreeMap<String, Estimate> {
-        let regions = self.scene.detectors[d].regions.iter().enumerate();
-        regions.map(|(r, region)| (region.label.clone(), self.estimate(self.counts.layout.region(d, r)))).collect()
-    }
-
-    /// Most that a watt of any source may count as.
-    fn most(&self, d: usize) -> f64 {
-        let steps = (0..=1000).map(|i| f64::from(i) / 1000.0);
-        let response = &self.scene.detectors[d].response;
-        let lights = self.scene.sources.iter().flat_map(|source| steps.clone().map(|u| source.spectrum.wavelength(u)));
-        lights.map(|wavelength| response.of(wavelength)).fold(0.0, f64::max)
-    }
-
-    fn peak(&self, d: usize) -> Peak {
-        let detector = &self.scene.detectors[d];
-        let [_, columns] = detector.grid.shape();
-        let value = |bin: usize| {
-            let extent = detector.extent(bin);
-            let estimate = self.estimate(self.counts.layout.bin(d, bin));
-            if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] }
-        };
-        let bins = 0..self.counts.layout.bins(d);
-        let best = bins.max_by(|&a, &b| value(a)[0].total_cmp(&value(b)[0]).then(b.cmp(&a)));
-        best.map_or(Peak::default(), |bin| {
-            let [mean, error] = value(bin);
-            Peak { mean, error, pixel: [bin / columns, bin % columns] }
-        })
-    }
-
-    fn map(&self, d: usize) -> MapResult {
-        let detector = &self.scene.detectors[d];
-        let grid = &detector.grid;
-        let bins = self.counts.layout.bins(d);
-        let upper = self.upper() * self.most(d);
-        let mut map = MapResult {
-            detector: detector.label.clone(),
-            kind: grid.kind(),
-            shape: grid.shape(),
-            axes: grid.axes(),
-            unit: detector.unit(),
-            mean: vec![0.0; bins],
-            error: vec![0.0; bins],
-            rays: vec![0; bins],
-            upper: vec![0.0; bins],
-            extent: (0..bins).map(|bin| detector.extent(bin)).collect(),
-            origin: (grid.origin() + self.scene.shift).to_array(),
-            column_direction: grid.frame().x.to_array(),
-            row_direction: grid.frame().y.to_array(),
-            stray: self.stray_map(d),
-            side: detector.side.label(),
-        };
-        for bin in 0..bins {
-            let slot = self.counts.layout.bin(d, bin);
-            let extent = map.extent[bin];
-            map.rays[bin] = self.sums().rays(slot);
-            if extent > 0.0 {
-                let estimate = self.estimate(slot);
-                map.mean[bin] = estimate.mean / extent;
-                map.error[bin] = estimate.error / extent;
-                map.upper[bin] = if map.rays[bin] == 0 { upper / extent } else { 0.0 };
-            }
-        }
-        map
-    }
-
-    /// Mean and error of stray light alone in every bin, where it is counted apart.
-    fn stray_map(&self, d: usize) -> Option<[Vec<f64>; 2]> {
-        let detector = &self.scene.detectors[d];
-        let value = |bin: usize| {
-            let estimate = self.estimate(self.counts.layout.stray_bin(d, bin)?);
-            let extent = detector.extent(bin);
-            Some(if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] })
-        };
-        let bins: Option<Vec<[f64; 2]>> = (0..self.counts.layout.bins(d)).map(value).collect();
-        bins.map(|bins| [0, 1].map(|k| bins.iter().map(|bin| bin[k]).collect()))
-    }
-
-    /// Rows of one detector, brightest first, and what had no row.
-    fn paths(&self, d: usize) -> Vec<PathResult> {
-        let total = self.estimate(self.counts.layout.detector(d)).mean;
-        let areas = self.cell_areas(d);
-        let rows = self.counts.rows.rows.iter().enumerate().filter(|(_, row)| row.detector == d);
-        let mut paths: Vec<PathResult> = rows.filter_map(|(index, _)| self.path(index, total, &areas)).collect();
-        paths.sort_by(|a, b| b.flux_w.mean.total_cmp(&a.flux_w.mean).then(a.sequence.cmp(&b.sequence)));
-        let slot = self.counts.layout.other(d);
-        let flux_w = self.estimate(slot);
-        if flux_w.mean != 0.0 {
-            paths.push(PathResult {
-                detector: self.scene.detectors[d].label.clone(),
-                source: String::new(),
-                sequence: "other".into(),
-                class: "mixed".into(),
-                rays: self.sums().rays(slot),
-                flux_w,
-                percent: 100.0 * flux_w.mean / total,
-                ghost_order: 0,
-                scatter_order: 0,
-                last_scatter: String::new(),
-                optical_path_m: 0.0,
-                peak_w_m2: 0.0,
-                cells: Vec::new(),
-            });
-        }
-        paths
-    }
-
-    fn path(&self, index: usize, total: f64, areas: &[f64]) -> Option<PathResult> {
-        let layout = &self.counts.layout;
-        let row = &self.counts.rows.rows[index];
-        let flux_w = self.estimate(layout.row(index));
-        // Other variants may have light on a path that this one has not.
-        if flux_w.mean == 0.0 {
-            return None;
-        }
-        let rays = self.sums().rays(layout.row(index));
-        let density = |(slot, area): (usize, &f64)| if *area > 0.0 { self.estimate(slot).mean / area } else { 0.0 };
-        let cells: Vec<f64> = layout.row_cells(index).zip(areas).map(density).collect();
-        let source = self.scene.sources[row.source].label.clone();
-        Some(PathResult {
-            detector: self.scene.detectors[row.detector].label.clone(),
-            sequence: sequence(self.scene, row),
-            source,
-            class: row.class.label(self.scene.has_optics),
-            rays,
-            flux_w,
-            percent: 100.0 * flux_w.mean / total,
-            ghost_order: row.ghosts as u32,
-            scatter_order: row.scatters as u32,
-            last_scatter: row.last_scatter.map_or(String::new(), |step| label(self.scene, &step).into()),
-            optical_path_m: self.estimate(layout.row_path(index)).mean / flux_w.mean,
-            peak_w_m2: cells.iter().copied().fold(0.0, f64::max),
-            cells,
-        })
-    }
-
-    /// Size of each cell of the coarse path grid, m2 or sr.
-    fn cell_areas(&self, d: usize) -> Vec<f64> {
-        let grid = &self.scene.detectors[d].grid;
-        let mut areas = vec![0.0; PATH_GRID * PATH_GRID];
-        for bin in 0..self.counts.layout.bins(d) {
-            areas[coarse_cell(bin, grid.shape())] += grid.extent(bin);
-        }
-        areas
     }
 }
