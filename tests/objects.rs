@@ -274,7 +274,7 @@ fn an_isothermal_enclosure_is_uniform_whatever_is_in_it() {
     }
     let text = format!(
         "media: {{\"grey\": Constant(n: 1.5, absorption: \"0.1 /mm\")}}, scatter: {{ {scatter} }}, surfaces: [{surfaces}],
-        detectors: {{ {detectors} }}, {} run: (rays: 30_000, roulette: (below: 0.1, survive: 0.3)),",
+        detectors: {{ {detectors} }}, {} run: (rays: 8_000, roulette: (below: 0.1, survive: 0.3)),",
         glowing(BAND, "(\"*\", \"300 K\")")
     );
     let found = looked(&warm(&text, &model));

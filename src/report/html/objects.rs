@@ -18,6 +18,9 @@ const LIT: &str = "#d9822b";
 const BOTH: &str = "#a3243b";
 const WARM: &str = "#c0632b";
 
+/// Width of the bars beside many columns of numbers.
+const GAUGE: &str = "width:11%";
+
 /// The whole body.
 pub fn body(found: &Objects, run: &RunInfo) -> Markup {
     html! {
@@ -87,14 +90,14 @@ fn seen(view: &View) -> Markup {
     html! {
         h3 { "What it sees: projected solid angle, sr, weighed with what arrives of the light" }
         table.parts {
-            thead { tr { th { "Object" } @for way in Way::ALL { th.right { (title(way)) } } th.right { "Absorbs, any way" } th {} } }
+            thead { tr { (first_column()) @for way in Way::ALL { th.right { (title(way)) } } th.right { "Absorbs, any way" } th {} } }
             tbody { @for seen in &shown { tr {
                 td { (seen.object) }
                 (ways(&seen.seen_sr))
                 td.right { (cell(seen.absorbed_sr)) }
-                td.gauge { (gauge(total(&seen.seen_sr) / largest, SEEN)) }
+                td.gauge style=(GAUGE) { (gauge(total(&seen.seen_sr) / largest, SEEN)) }
             } }
-            tr { td { "Open sky" } (ways(&view.sky_sr)) td.right { (cell(view.escaped_sr)) } td.gauge { (gauge(total(&view.sky_sr) / largest, SEEN)) } } }
+            tr { td { "Open sky" } (ways(&view.sky_sr)) td.right { (cell(view.escaped_sr)) } td.gauge style=(GAUGE) { (gauge(total(&view.sky_sr) / largest, SEEN)) } } }
         }
         p.note { "Flux on the detector = radiance of the object × " (plain(1e6 * view.area_m2, "mm2")) " × solid angle. Of " (plain(view.whole_sr, "sr"))
             ", " (estimate(view.absorbed_sr, "sr")) " end in objects, " (estimate(view.escaped_sr, "sr")) " in the sky; missing " (estimate(view.residual_sr, "sr")) "." }
@@ -114,11 +117,11 @@ fn lit(found: &Objects) -> Markup {
                 h2 { "What the sources light" }
                 h3 { "Flux that falls on it, W, of " (plain(found.sources_w, "W")) }
                 table.parts {
-                    thead { tr { th { "Object" } @for way in Way::ALL { th.right { (title(way)) } } th {} } }
+                    thead { tr { (first_column()) @for way in Way::ALL { th.right { (title(way)) } } th {} } }
                     tbody { @for lit in &shown { tr {
                         td { (lit.object) }
                         (ways(&lit.flux_w))
-                        td.gauge { (gauge(total(&lit.flux_w) / largest, LIT)) }
+                        td.gauge style=(GAUGE) { (gauge(total(&lit.flux_w) / largest, LIT)) }
                     } } }
                 }
                 (unseen("Dark", &dark, found.lit.iter().find_map(|lit| lit.upper_limit_w), "W"))
@@ -134,7 +137,7 @@ fn thermal(warmth: &Warmth) -> Markup {
         h3 { "What warm objects send to it, " (from) " to " (to) " µm" }
         table.parts {
             thead { tr { th { "Object" } th.right { "Temperature" } th.right { "Flux" } th.right { "Photons" } th {} } }
-            tbody { @for warm in warmth.objects.iter().take(LISTED) { tr {
+            tbody { @for warm in warmth.notable().take(LISTED) { tr {
                 td { (warm.object) }
                 td.right { (plain(warm.temperature_k, "K")) }
                 @if let Some(most) = warm.upper_limit_w { td.right { (limit(most, "W")) } td.right { "–" } }
@@ -144,6 +147,11 @@ fn thermal(warmth: &Warmth) -> Markup {
             tfoot { tr { th { "All" } td {} td.right { (estimate(warmth.flux_w, "W")) } td.right { (estimate(warmth.photons_per_s, "/s")) } td {} } }
         }
     }
+}
+
+/// The heading of the names, which many columns of numbers would squeeze.
+fn first_column() -> Markup {
+    html! { th style="min-width:8.5em" { "Object" } }
 }
 
 fn title(way: Way) -> String {

@@ -92,7 +92,7 @@ fn thermal(out: &mut String, view: &View, warmth: &Warmth) -> fmt::Result {
     let [from, to] = warmth.band_m.map(|m| measured(1e6 * m, 0.0));
     writeln!(out, "\nThermal light on {}, {from} to {to} um", view.detector)?;
     let mut rows = vec![["object", "K", "W", "photons/s"].map(String::from).to_vec()];
-    for warm in warmth.objects.iter().take(LISTED) {
+    for warm in warmth.notable().take(LISTED) {
         let flux = match warm.upper_limit_w {
             Some(limit) => [below(limit), "-".into()],
             None => [warm.flux_w, warm.photons_per_s].map(cell),

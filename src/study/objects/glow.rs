@@ -96,6 +96,10 @@ impl Watch for Glow<'_> {
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
         let sight = sight();
+        // A long way through what absorbs may leave nothing.
+        if sight.flux <= 0.0 {
+            return;
+        }
         let part = sight.part as usize;
         self.absorbs(self.slots.part(part), self.thermal.parts[part], sight.flux * sight.fractions[3]);
     }

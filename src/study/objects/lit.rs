@@ -67,6 +67,10 @@ impl Watch for Lamp {
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
         let Some(way) = self.way else { return };
         let sight = sight();
+        // A long way through what absorbs may leave nothing.
+        if sight.flux <= 0.0 {
+            return;
+        }
         let part = sight.part as usize;
         self.live.add(self.slots.way(part, way), [sight.flux]);
         if way.is_first() {

@@ -27,6 +27,9 @@ const DOUBTFUL: f64 = 1e-3;
 /// Standard errors beyond which a residual is none of chance.
 const SIGMAS: f64 = 4.0;
 
+/// Draws the vacuum wavelength (m) of a ray from its coordinates, and tells it to what watches.
+type Draw<'f, W> = dyn Fn(&mut W, &mut dyn FnMut(u32) -> f64) -> f64 + 'f;
+
 /// What all looks have in common.
 pub struct Looks<'a> {
     question: Question<'a>,
@@ -101,11 +104,11 @@ impl<'a> Looks<'a> {
     }
 
     /// One batch of one look, which has a name, from a detector: its ledger, what was watched, its flights.
-    fn batch<'w, W: Watch>(
-        &'w self,
+    fn batch<W: Watch>(
+        &self,
         (name, detector, batch): (u64, usize, u64),
         watch: W,
-        wavelength: &dyn Fn(&mut W, &mut dyn FnMut(u32) -> f64) -> f64,
+        wavelength: &Draw<'_, W>,
     ) -> (Sums<1>, W, u64) {
         let Question { scene, settings, .. } = self.question;
         let book = Book::new(&self.layout, Live::new(self.layout.len()), None);

@@ -142,6 +142,14 @@ pub struct Warmth {
     pub photons_per_s: Estimate,
 }
 
+impl Warmth {
+    /// The objects that bring more than a millionth of the light; the rest is rounding, but for those that no ray ended in.
+    pub fn notable(&self) -> impl Iterator<Item = &Warm> {
+        let least = 1e-6 * self.flux_w.mean;
+        self.objects.iter().filter(move |warm| warm.upper_limit_w.is_some() || warm.flux_w.mean > least)
+    }
+}
+
 /// A warm object.
 #[derive(Clone, Debug, Serialize)]
 pub struct Warm {

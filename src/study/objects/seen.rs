@@ -84,6 +84,10 @@ impl Watch for Eye<'_> {
 
     fn event(&mut self, sight: impl FnOnce() -> Sight) {
         let sight = sight();
+        // A long way through what absorbs may leave nothing.
+        if sight.flux <= 0.0 {
+            return;
+        }
         let part = sight.part as usize;
         self.live.add(self.slots.absorbed(part), [sight.flux * sight.fractions[3]]);
         let Some(way) = self.way else { return };
