@@ -382,7 +382,7 @@ fn a_report_is_complete_and_leaves_nothing_else() {
     let mut told = written.clone();
     told.sort();
     assert_eq!(found, told);
-    assert_eq!(written.len(), 6 * 4 + 3);
+    assert_eq!(written.len(), 6 * 4 + 4);
     assert!(dir.join("dome_inner_error.npy").exists() && dir.join("far_field.fits").exists());
     assert!(dir.join("fpa_off_the_barrel.fits").exists());
     assert!(written.last().unwrap().ends_with("summary.json"));
@@ -418,6 +418,9 @@ fn the_page_asks_for_nothing_and_names_everything() {
     assert!(outside.iter().all(|link| !page.contains(link)), "one file, no network");
     for word in [
         "guide port",
+        "badge pass",
+        "badge fail",
+        "one scatter off Barrel",
         "Baffle_2 has 4 open edges",
         "60303ae22b998861",
         "lower left corner",

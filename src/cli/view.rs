@@ -25,8 +25,8 @@ const EXAMPLE: &str = "\
 Example:
   straylight view systems/triplet/system.ron -o view.html
 
-One page for a browser, without network: the parts coloured by finish, coating, medium or side, a section plane,
-normals, and fifty rays of every source. A click on a part says what it is.";
+One page for a browser, without network: the parts coloured by finish, coating, medium or side, a section
+plane, normals, and fifty rays of every source. A click on a part says what it is.";
 
 /// Rays of every source.
 const RAYS: u64 = 50;

@@ -8,7 +8,7 @@ use crate::report::measured::grouped;
 use crate::tally::results::{DetectorResult, Results, RunInfo};
 use maud::{Markup, html};
 
-/// Part of the light from which a class is in the legend; all are in the table of its detector.
+/// Part of the stray light from which a class of it is in the legend; all are in the table of its detector.
 const LISTED: f64 = 1e-4;
 
 pub fn overview(results: &Results, run: &RunInfo) -> Markup {
@@ -116,7 +116,7 @@ fn bar(detector: &DetectorResult) -> Markup {
                 figcaption {
                     @if enlarged { p.note { "Lower strip: stray light alone, × " (crate::report::measured::measured(digest::rounded(total / stray), 0.0)) "." } }
                     ul.legend {
-                        @for (class, _, share) in classes.iter().filter(|class| class.1.mean >= LISTED * total) {
+                        @for (class, _, share) in classes.iter().filter(|class| is_meant(class.0) || class.1.mean >= LISTED * stray) {
                             li { span.swatch style=(format!("background:{}", tone(class))) {} (class) " " span.share { (share) " %" } }
                         }
                     }

@@ -43,7 +43,9 @@ fn gathered(parts: &[Vec<[DVec3; 3]>], cell: Option<f64>) -> Soup {
             let indices = corners.map(|corner| {
                 let key = key(corner, cell);
                 let there = *places.entry(key).or_insert(corner);
-                soup.moved = soup.moved.max((corner - there).length());
+                if cell.is_some() {
+                    soup.moved = soup.moved.max((corner - there).length());
+                }
                 *known.entry(key).or_insert_with(|| {
                     soup.corners.push(single(there));
                     soup.corners.len() as u32 - 1

@@ -23,7 +23,7 @@ function readOut(figure, image, map) {
   figure.append(said, sections);
   figure.tabIndex = 0;
   figure.setAttribute("aria-label", `Map of ${map.detector}: arrow keys move from pixel to pixel`);
-  const cross = [1, 2].map(() => document.createElementNS("http://www.w3.org/2000/svg", "line"));
+  const cross = [1, 2].map(() => document.createElementNS(image.namespaceURI, "line"));
   cross.forEach((line) => (line.classList.add("cross"), image.parentNode.append(line)));
 
   // A length of an axis in mm.
@@ -41,8 +41,8 @@ function readOut(figure, image, map) {
     const up = (values) => Float32Array.from({ length: rows }, (_, r) => values[r * columns + column]);
     const lines = (slice) => [slice(mean), ...(stray ? [slice(stray)] : [])];
     sections.replaceChildren(
-      profile(`Row ${row}`, lines(along), column, map, 0),
-      profile(`Column ${column}`, lines(up), row, map, 1),
+      profile(image.namespaceURI, `Row ${row}`, lines(along), column, map, 0),
+      profile(image.namespaceURI, `Column ${column}`, lines(up), row, map, 1),
     );
   }
   const clamp = (value, count) => Math.min(Math.max(value, 0), count - 1);
@@ -71,10 +71,10 @@ function readOut(figure, image, map) {
 }
 
 // Logarithmic curves over the bins of a row or a column: all light, and stray light.
-function profile(title, curves, marked, map, axis) {
+function profile(space, title, curves, marked, map, axis) {
   const [width, height, left, bottom] = [300, 120, 46, 22];
   const svg = (name, attributes) => {
-    const node = document.createElementNS("http://www.w3.org/2000/svg", name);
+    const node = document.createElementNS(space, name);
     for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
     return node;
   };
