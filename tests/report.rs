@@ -443,7 +443,7 @@ fn the_terminal_hears_the_key_numbers_with_their_errors() {
         "far field: 0.02267 ± 0.00015 W",
         "The ledger closes",
         "filter \"off the barrel\": 0.002910 ± 0.000031 W, 0.32 %  (sun > ... > Barrel*:S > ... > fpa)",
-        "! 1.20e-9 ± 0.40e-9 W more may be meant",
+        "! (1.20 ± 0.40)e-9 W more may be meant",
         "warning: Baffle_2",
     ] {
         assert!(text.contains(word), "{word} in\n{text}");

@@ -1,5 +1,7 @@
 //! The words and signs of an expression.
 
+#![allow(clippy::result_large_err, reason = "one problem ends the reading")]
+
 use crate::error::{Problem, Span};
 
 /// One word or sign, and its place: column from 1, length in characters.

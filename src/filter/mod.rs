@@ -140,7 +140,11 @@ impl Steps {
 
     /// Whether there may be such a step in what is not spelled out of a path.
     fn may_follow(&self, path: &Ancestry) -> bool {
-        self.events.iter().zip(path.unspelled()).any(|(wanted, there)| *wanted && there)
+        let unspelled = path.unspelled();
+        [Event::Reflect, Event::Transmit, Event::Scatter, Event::Bulk].into_iter().any(|event| {
+            let named = if event == Event::Bulk { &self.media } else { &self.parts };
+            self.events[event as usize] && unspelled[event as usize] && named.contains(&true)
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 //! Reads an expression.
 
+#![allow(clippy::result_large_err, reason = "one problem ends the reading")]
+
 use super::chain::{Chain, Link};
 use super::lexer::{Token, What, tokens};
 use super::{Comparison, Count, Met, Names, Rule, Steps, Word, matches};
@@ -227,10 +229,11 @@ impl Reader<'_> {
             [false, true] => &[Kind::Medium],
             _ => &[Kind::Part, Kind::Medium],
         };
-        let mut found = kinds.iter().zip(self.marked(item, kinds));
-        let mut of = |wanted: Kind| found.find(|(kind, _)| **kind == wanted).map(|(_, marked)| marked);
-        let (parts, media) = (of(Kind::Part), of(Kind::Medium));
-        Steps { parts: parts.unwrap_or_default(), media: media.unwrap_or_default(), events }
+        let mut steps = Steps { parts: Vec::new(), media: Vec::new(), events };
+        for (kind, marked) in kinds.iter().zip(self.marked(item, kinds)) {
+            *(if *kind == Kind::Medium { &mut steps.media } else { &mut steps.parts }) = marked;
+        }
+        steps
     }
 
     fn met(&mut self, item: &Item) -> Met {

@@ -11,7 +11,7 @@ const FILTERS: &str = "    filters: {
         \"signal\": \"signal\",
         \"stray\": \"stray\",
         \"worst\": \"ghost(L4.back, L4.front)\",
-        \"its way\": \"star > ... > L4.front:T > L4.back:R > L4.front:R > L4.back:T > image\",
+        \"its way\": \"ghosts == 2 and scatters == 0 and star > ... > L4.front:T > L4.back:R > L4.front:R > L4.back:T > image\",
         \"barrel\": \"scatters == 1 and barrel*\",
         \"no barrel\": \"not (scatters == 1 and barrel*)\",
         \"nothing\": \"lens_that_is_not or direct\",

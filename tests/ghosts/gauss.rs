@@ -1,6 +1,7 @@
 //! The double Gauss of `systems/double_gauss`, lit along its axis, and its vertices as a list.
 
 use crate::unfold::Vertex;
+use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use straylight::study::ghost::{Ghosts, ghosts};
@@ -45,30 +46,32 @@ pub fn gauss(beam: f64, rays: u64, edits: &[(&str, &str)]) -> Gauss {
 fn train(document: &Document, compiled: &Compiled) -> (Vec<Vertex>, Vec<([f64; 2], f64)>) {
     let scene = &compiled.scene;
     let wavelength = 587.7246e-9;
-    let index = |name: &str| {
+    let complex = |name: &str| {
         let medium = scene.media.iter().position(|filling| filling.label == name).expect("a medium");
-        scene.index(medium as u16, wavelength).re
+        scene.index(medium as u16, wavelength)
     };
+    let absorption = |name: &str| 4.0 * PI * complex(name).im / wavelength;
     let (mut train, mut bores) = (Vec::new(), Vec::new());
     for (_, element) in document.system.elements.iter() {
         let z = element.at.0.z;
         match &element.body {
             Body::Lens { surfaces, thickness, media, .. } => {
-                let glasses: Vec<f64> = media.iter().map(|name| index(name)).collect();
                 let mut place = z;
                 for (at, surface) in surfaces.iter().enumerate() {
-                    let around = |i: Option<usize>| i.and_then(|i| glasses.get(i)).copied().unwrap_or(index("air"));
+                    let around = |i: Option<usize>| i.and_then(|i| media.get(i)).map_or("air", String::as_str);
                     let curvature = if let Form::Sphere { radius } = &surface.form { 1.0 / radius.0 } else { 0.0 };
                     let semi = surface.semi_diameter.as_ref().expect("a semi-diameter").0;
-                    let indices = [around(at.checked_sub(1)), around(Some(at))];
-                    train.push(Vertex { place, curvature, semi, indices, reflectance: None });
+                    let sides = [around(at.checked_sub(1)), around(Some(at))];
+                    let (indices, absorption) = (sides.map(|name| complex(name).re), sides.map(absorption));
+                    train.push(Vertex { place, curvature, semi, indices, absorption, reflectance: None });
                     place += thickness.get(at).map_or(0.0, |thickness| thickness.0);
                 }
             }
             Body::Aperture { diameter, .. } if diameter.0 > 0.0 => bores.push(([z, z], 0.5 * diameter.0)),
             Body::Aperture { outer, .. } => {
-                let indices = [index("air"); 2];
-                train.push(Vertex { place: z, curvature: 0.0, semi: 0.5 * outer.0, indices, reflectance: Some(0.0) });
+                let (indices, absorption) = ([complex("air").re; 2], [0.0; 2]);
+                let semi = 0.5 * outer.0;
+                train.push(Vertex { place: z, curvature: 0.0, semi, indices, absorption, reflectance: Some(0.0) });
             }
             Body::Tube { inner, length, .. } => bores.push(([z, z + length.0], 0.5 * inner.0)),
             other => panic!("{other:?} in a double Gauss"),

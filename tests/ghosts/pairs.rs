@@ -62,7 +62,8 @@ fn a_sensor_that_reflects_makes_a_ghost_with_every_surface() {
     first_order(&gauss, 0.02e-3, gauss.train.len());
 }
 
-/// At a wide aperture rays are aberrated and vignetted: the flux of every pair by exact rays through the unfolded train, to 1 %.
+/// At a wide aperture rays are aberrated and vignetted: the flux of every pair by exact rays through the unfolded
+/// train, to 1 % and four standard errors.
 #[test]
 fn every_pair_has_the_flux_of_its_unfolded_train() {
     let (beam, count) = (20e-3, 20_000);
@@ -73,7 +74,8 @@ fn every_pair_has_the_flux_of_its_unfolded_train() {
     for (ghost, pair) in pairs(&found) {
         let sum: f64 = (0..count).map(|i| exact(&gauss.train, &gauss.bores, pair, height(i))).sum();
         let wanted = sum / f64::from(count);
-        near(ghost.flux_w.mean, wanted, 0.01 * wanted, &format!("flux of {:?}", ghost.surfaces));
+        let error = 4.0 * ghost.flux_w.error;
+        near(ghost.flux_w.mean, wanted, 0.01 * wanted + error, &format!("flux of {:?}", ghost.surfaces));
     }
 }
 
@@ -85,8 +87,8 @@ fn a_ghost_of_1e_minus_9_is_known_as_well_as_a_bright_one() {
             "    coatings: { \"ar\": Ideal(reflectance: 3e-5, transmittance: 0.99997) },\n    scatter: {",
         ),
         (
-            "    surfaces: [\n",
-            "    surfaces: [\n        (on: Any([Tag(\"L4.front\"), Tag(\"L4.back\")]), coating: \"ar\"),\n",
+            "\n    surfaces: [\n",
+            "\n    surfaces: [\n        (on: Any([Tag(\"L4.front\"), Tag(\"L4.back\")]), coating: \"ar\"),\n",
         ),
     ];
     let [bare, coated] = [[].as_slice(), &edits].map(|edits| gauss(20.0, 2048, edits).ghosts());

@@ -11,6 +11,8 @@ pub struct Vertex {
     pub semi: f64,
     /// Before and behind it.
     pub indices: [f64; 2],
+    /// Of flux, before and behind it, 1/m.
+    pub absorption: [f64; 2],
     /// Of what does not transmit.
     pub reflectance: Option<f64>,
 }
@@ -39,7 +41,8 @@ pub struct Paraxial {
 pub fn paraxial(train: &[Vertex], pair: [usize; 2]) -> Paraxial {
     let (mut y, mut u, mut z, mut flux, mut fullest) = (1.0, 0.0, train[0].place, 1.0, 0f64);
     for (at, reflects, onward) in turns(train.len(), pair) {
-        let Vertex { place, curvature, semi, indices: [before, behind], reflectance } = train[at];
+        let Vertex { place, curvature, semi, indices: [before, behind], absorption, reflectance } = train[at];
+        flux *= (-absorption[!onward as usize] * (place - z).abs()).exp();
         y += u * (place - z);
         z = place;
         fullest = fullest.max(y.abs() / semi);
@@ -70,10 +73,12 @@ pub fn exact(train: &[Vertex], bores: &[([f64; 2], f64)], pair: [usize; 2], y: f
     let mut shares = [0.5; 2];
     for (at, reflects, onward) in turns(train.len(), pair) {
         let vertex = &train[at];
-        let Some((normal, new)) = reach(&ray, vertex) else { return 0.0 };
+        let Some((new, normal)) = reach(&ray, vertex) else { return 0.0 };
         if new[0].abs() > vertex.semi || blocked(bores, ray.at, new) {
             return 0.0;
         }
+        let flight = (new[0] - ray.at[0]).hypot(new[1] - ray.at[1]);
+        shares = shares.map(|share| share * (-vertex.absorption[!onward as usize] * flight).exp());
         let [n, m] = if onward { vertex.indices } else { [vertex.indices[1], vertex.indices[0]] };
         let cosine = normal[0] * ray.along[0] + normal[1] * ray.along[1];
         let sine = (n / m) * (1.0 - cosine * cosine).max(0.0).sqrt();
@@ -96,7 +101,7 @@ pub fn exact(train: &[Vertex], bores: &[([f64; 2], f64)], pair: [usize; 2], y: f
     }
     let image = &train[train.len() - 1];
     match reach(&ray, image) {
-        Some((_, at)) if at[0].abs() <= image.semi && !blocked(bores, ray.at, at) => shares[0] + shares[1],
+        Some((at, _)) if at[0].abs() <= image.semi && !blocked(bores, ray.at, at) => shares[0] + shares[1],
         _ => 0.0,
     }
 }
@@ -112,7 +117,8 @@ fn reach(ray: &Ray, vertex: &Vertex) -> Option<([f64; 2], [f64; 2])> {
     if root < 0.0 {
         return None;
     }
-    let t = k / (-b - b.signum() * root.sqrt());
+    // The one of two points that is nearer to the vertex.
+    let t = k / (-b + d[1].signum() * root.sqrt());
     let at = [ray.at[0] + t * d[0], ray.at[1] + t * d[1]];
     let normal = [-c * at[0], 1.0 - c * (at[1] - vertex.place)];
     let length = normal[0].hypot(normal[1]);

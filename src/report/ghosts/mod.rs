@@ -16,7 +16,7 @@ pub use text::ghosts as text;
 use super::write::{Folder, WriteError};
 use super::{html, name, npy, picture};
 use crate::study::ghost::{Ghost, Ghosts};
-use crate::tally::results::RunInfo;
+use crate::tally::results::{Estimate, RunInfo};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -99,6 +99,15 @@ pub fn write(dir: &Path, ghosts: &Ghosts, run: &RunInfo) -> Result<Vec<PathBuf>,
         out.write_all(b"\n")
     })?;
     Ok(folder.written)
+}
+
+/// Errors below this part of a value are not shown: its rays are all alike.
+const ALIKE: f64 = 1e-6;
+
+/// A value times `factor`, as it is shown.
+pub fn shown(value: Estimate, factor: f64) -> Estimate {
+    let error = if value.error < ALIKE * value.mean.abs() { 0.0 } else { factor * value.error };
+    Estimate { mean: factor * value.mean, error }
 }
 
 fn map_name(ghost: &Ghost) -> String {

@@ -1,6 +1,6 @@
 //! Ghosts for the terminal.
 
-use super::{View, views};
+use super::{View, shown, views};
 use crate::report::measured::{below, grouped, measured};
 use crate::study::ghost::{Ghost, Ghosts};
 use crate::tally::results::{Estimate, RunInfo};
@@ -64,7 +64,7 @@ fn line(ghost: &Ghost) -> String {
         "  {:>24} {:>24} {:>24} {:>18} {:>20}  {}",
         told(Some(ghost.flux_w), 1.0),
         told(ghost.relative, 1.0),
-        measured(ghost.peak_w_m2.mean, ghost.peak_w_m2.error),
+        told(Some(Estimate { mean: ghost.peak_w_m2.mean, error: ghost.peak_w_m2.error }), 1.0),
         told(ghost.rms_radius_m, 1e3),
         told(ghost.focus_m, 1e3),
         ghost.surfaces.join(", ")
@@ -72,7 +72,7 @@ fn line(ghost: &Ghost) -> String {
 }
 
 fn told(value: Option<Estimate>, factor: f64) -> String {
-    value.map_or("-".into(), |value| measured(factor * value.mean, factor * value.error))
+    value.map(|value| shown(value, factor)).map_or("-".into(), |value| measured(value.mean, value.error))
 }
 
 /// Rows: first surface; columns: second surface, by number; `0`: nothing arrives, blank: no such way.

@@ -3,7 +3,7 @@
 use super::figure::{self, Figure};
 use super::number::{estimate, limit, plain};
 use super::reproduce;
-use crate::report::ghosts::{View, views};
+use crate::report::ghosts::{View, shown, views};
 use crate::report::measured::grouped;
 use crate::report::picture::{Field, Palette, Scale};
 use crate::study::ghost::{Ghost, Ghosts};
@@ -146,9 +146,9 @@ fn row(ghost: &Ghost) -> Markup {
     html! {
         tr {
             td.named { (ghost.surfaces.join(" › ")) }
-            td.right { (estimate(ghost.flux_w, "")) }
+            td.right { (known(Some(ghost.flux_w), 1.0)) }
             td.right { @if let Some(relative) = ghost.relative { (plain(relative.mean, "")) } }
-            td.right { (estimate(peak, "")) }
+            td.right { (known(Some(peak), 1.0)) }
             td.right { @if let Some([x, y]) = ghost.centroid_m { (format!("{:.3}, {:.3}", 1e3 * x.mean, 1e3 * y.mean)) } }
             td.right { (known(ghost.rms_radius_m, 1e3)) }
             td.right { @if let Some([width, height]) = ghost.size_m { (format!("{:.2} × {:.2}", 1e3 * width, 1e3 * height)) } }
@@ -158,7 +158,7 @@ fn row(ghost: &Ghost) -> Markup {
 }
 
 fn known(value: Option<Estimate>, factor: f64) -> Markup {
-    html! { @if let Some(value) = value { (estimate(Estimate { mean: factor * value.mean, error: factor * value.error }, "")) } }
+    html! { @if let Some(value) = value { (estimate(shown(value, factor), "")) } }
 }
 
 /// What is begun and never arrives.
