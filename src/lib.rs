@@ -33,14 +33,14 @@
 //!                    maps, tables, page, messages
 //! ─────────────────────────────────────────────────────────────
 //!                           study
-//!                    comparisons of variants, sensitivities, field sweeps, glare
+//!                    comparisons of variants, sensitivities, field sweeps, glare, ghosts
 //! ─────────────────────────────────────────────────────────────
 //!            system                      transport
 //!   document, glTF, compiler    walk, interaction, path table
 //! ─────────────────────────────────────────────────────────────
 //!                           scene
 //! ─────────────────────────────────────────────────────────────
-//!                     surface     tally
+//!                 surface     tally     filter
 //! ─────────────────────────────────────────────────────────────
 //!      coating   bsdf   packet   source   detector   aim
 //! ─────────────────────────────────────────────────────────────
@@ -71,6 +71,7 @@ pub mod detector;
 pub mod error;
 /// An air film between faces that lie on each other.
 pub mod film;
+pub mod filter;
 pub mod geometry;
 pub mod import;
 pub mod math;

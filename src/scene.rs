@@ -2,14 +2,16 @@
 
 use crate::aim::Target;
 use crate::detector::Detector;
+use crate::filter::{Filter, Names};
 use crate::geometry::{Bvh, Hit, Left, Ray};
 use crate::medium::Medium;
-use crate::packet::{Class, Solids};
+use crate::packet::{Ancestry, Class, Solids};
 use crate::source::Source;
 use crate::surface::Surface;
 use crate::tally::Layout;
 use glam::DVec3;
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A compiled system.
@@ -27,6 +29,8 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     pub sources: Vec<Source>,
     pub detectors: Vec<Detector>,
+    /// Choices of light that are counted apart.
+    pub filters: Vec<Filter>,
     /// What surfaces may aim at.
     pub targets: Vec<Target>,
     /// Scene coordinates are world coordinates minus this, m: the scene is centred so that no digits are lost far from the origin.
@@ -94,12 +98,28 @@ impl Scene {
     /// Slots of a run with `rows` rows in its path table.
     pub fn layout(&self, rows: usize) -> Layout {
         let bins = self.detectors.iter().map(|d| d.grid.shape().iter().product()).collect();
-        Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows)
+        Layout::new(self.parts.len(), self.media.len(), self.sources.len(), bins, rows).with_filters(self.filters.len())
     }
 
     /// The class of the light that is meant to arrive: the image, or what comes straight where nothing makes one.
     pub fn image(&self) -> Class {
         if self.has_optics { Class::Signal } else { Class::Direct }
+    }
+
+    /// What filters may name.
+    pub fn names(&self) -> Names {
+        Names {
+            sources: self.sources.iter().map(|source| source.label.clone()).collect(),
+            parts: self.parts.iter().map(|part| part.label.clone()).collect(),
+            media: self.media.iter().map(|filling| filling.label.clone()).collect(),
+            detectors: self.detectors.iter().map(|detector| detector.label.clone()).collect(),
+            image: self.image(),
+        }
+    }
+
+    /// A path as a detector sees it that it has come to: see [`Ancestry::ending`].
+    pub fn ending<'a>(&self, detector: usize, path: &'a Ancestry) -> Cow<'a, Ancestry> {
+        path.ending(|part| self.parts[part as usize].detectors.contains(&(detector as u16)))
     }
 
     /// Medium of the innermost of `solids`.

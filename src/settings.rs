@@ -16,6 +16,8 @@ pub struct Settings {
     /// Limits that cut and book; `None`: no limit.
     pub max_scatters: Option<u16>,
     pub max_reflections: Option<u32>,
+    /// Reflections at surfaces that can transmit.
+    pub max_ghosts: Option<u16>,
     /// A guard against endless paths; booked if it ever cuts.
     pub max_events: u32,
     /// Stop early at this relative error.
@@ -84,6 +86,7 @@ impl Default for Settings {
             roulette: Roulette { below: 1e-12, survive: 0.1 },
             max_scatters: None,
             max_reflections: None,
+            max_ghosts: None,
             max_events: 1_000_000,
             until: None,
             paths: 1000,

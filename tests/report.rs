@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 use straylight::report;
 use straylight::tally::results::{
-    Axis, DetectorResult, Estimate, GuidanceResult, LedgerResult, MapKind, MapResult, PathResult, Peak, Results,
-    RunInfo,
+    Axis, DetectorResult, Estimate, FilterResult, GuidanceResult, LedgerResult, MapKind, MapResult, PathResult, Peak,
+    Results, RunInfo,
 };
 
 fn estimate(mean: f64, error: f64) -> Estimate {
@@ -37,6 +37,7 @@ fn map(
     let rays: Vec<u64> = mean.iter().map(|mean| (mean * 4e2).ceil() as u64).collect();
     MapResult {
         detector: detector.into(),
+        filter: None,
         kind,
         shape,
         axes,
@@ -178,6 +179,25 @@ fn paths() -> Vec<PathResult> {
     rows
 }
 
+/// Scatter at the barrel in the lower half of the focal plane, and a little that came on paths too long to be spelled.
+fn filtered() -> FilterResult {
+    let whole = focal_plane();
+    let mean =
+        whole.mean.iter().enumerate().map(|(bin, mean)| if bin < 128 * 256 { 0.1 * mean } else { 0.0 }).collect();
+    FilterResult {
+        filter: "off the barrel".into(),
+        expression: "sun > ... > Barrel*:S > ... > fpa".into(),
+        detector: "fpa".into(),
+        flux_w: estimate(2.91e-3, 3.1e-5),
+        percent: 0.3236,
+        rays: 21_208,
+        upper_limit_w: None,
+        open_w: estimate(1.2e-9, 4.0e-10),
+        peak_w_m2: Peak { mean: 2.4e2, error: 31.0, pixel: [70, 150] },
+        map: MapResult { filter: Some("off the barrel".into()), mean, ..whole },
+    }
+}
+
 fn results() -> Results {
     Results {
         system: "Cooke triplet f/4 in a black barrel".into(),
@@ -217,6 +237,7 @@ fn results() -> Results {
         ]),
         parameters: BTreeMap::from([("hood.length".into(), "120 mm".into())]),
         finishes: vec!["generic black paint: generic, not measured".into()],
+        filters: vec![filtered()],
         importance: Some(GuidanceResult {
             used: true,
             gain: 12.6,
@@ -280,8 +301,9 @@ fn a_report_is_complete_and_leaves_nothing_else() {
     let mut told = written.clone();
     told.sort();
     assert_eq!(found, told);
-    assert_eq!(written.len(), 5 * 4 + 3);
+    assert_eq!(written.len(), 6 * 4 + 3);
     assert!(dir.join("dome_inner_error.npy").exists() && dir.join("far_field.fits").exists());
+    assert!(dir.join("fpa_off_the_barrel.fits").exists());
     assert!(written.last().unwrap().ends_with("summary.json"));
 }
 
@@ -300,6 +322,7 @@ fn the_summary_reads_back_with_results_and_run() {
     let summary: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["results"]["detectors"]["fpa"]["classes"]["signal"]["mean"], 0.893_21);
     assert_eq!(summary["results"]["ledger_w"]["emitted"]["mean"], 1.0);
+    assert_eq!(summary["results"]["filters"][0]["flux_w"]["mean"], 2.91e-3);
     assert_eq!(summary["run"]["threads"], 16);
 }
 
@@ -318,6 +341,8 @@ fn the_page_asks_for_nothing_and_names_everything() {
         "60303ae22b998861",
         "lower left corner",
         "No ray arrived",
+        "sun &gt; ... &gt; Barrel*:S &gt; ... &gt; fpa",
+        "paths of more than 24 steps",
         "--seed 20260412",
     ] {
         assert!(page.contains(word), "{word}");
@@ -333,6 +358,8 @@ fn the_terminal_hears_the_key_numbers_with_their_errors() {
         "guide port: < 2.9e-9 W",
         "far field: 0.02267 ± 0.00015 W",
         "The ledger closes",
+        "filter \"off the barrel\": 0.002910 ± 0.000031 W, 0.32 %  (sun > ... > Barrel*:S > ... > fpa)",
+        "! (1.20 ± 0.40)e-9 W more may be meant",
         "warning: Baffle_2",
     ] {
         assert!(text.contains(word), "{word} in\n{text}");
@@ -355,6 +382,7 @@ fn an_empty_run_is_reported_without_panic() {
         detectors: BTreeMap::new(),
         ledger_w: LedgerResult::default(),
         absorbed_w: BTreeMap::new(),
+        filters: Vec::new(),
         paths: Vec::new(),
         maps: Vec::new(),
         ..results()

@@ -145,9 +145,9 @@ impl Log {
 }
 
 impl Watch for Log {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         let letters: String = ancestry.steps.iter().map(|step| step.event().letter()).collect();
-        let longer = ancestry.events as usize > ancestry.steps.len();
+        let longer = !ancestry.is_spelled();
         self.way = if longer { format!("{letters}..") } else { letters };
     }
 

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use straylight::error::Error;
+use straylight::filter::Filter;
 use straylight::report;
 use straylight::scene::Scene;
 use straylight::settings::{Settings, Until};
@@ -39,6 +40,9 @@ pub struct RunArgs {
     /// Stop early at this relative standard error: "1 % on fpa"
     #[arg(long, value_name = "ERROR")]
     pub until: Option<String>,
+    /// Count light apart by its way, beside the system's own `filters`: "scatters == 1 and Barrel*"; may be repeated
+    #[arg(long, value_name = "EXPRESSION")]
+    pub filter: Vec<String>,
     #[command(flatten)]
     pub chosen: Chosen,
 }
@@ -66,7 +70,8 @@ pub fn count(text: &str) -> Result<u64, String> {
 
 /// Runs it.
 pub fn run(args: &RunArgs) -> Result<Ending, Error> {
-    let compiled = load(&args.system, &args.chosen)?;
+    let mut compiled = load(&args.system, &args.chosen)?;
+    compiled.scene.filters.extend(filters(args, &compiled.scene)?);
     let settings = settings(args, &compiled)?;
     // Before the work, not after it.
     writable(&args.output)?;
@@ -109,6 +114,18 @@ pub fn run(args: &RunArgs) -> Result<Ending, Error> {
 pub fn writable(folder: &Path) -> Result<(), Error> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     tried.map(drop).map_err(|source| Error::Io { path: folder.into(), source })
+}
+
+/// The filters of the command line, each called as it is written.
+fn filters(args: &RunArgs, scene: &Scene) -> Result<Vec<Filter>, Error> {
+    let (names, mut filters, mut wrong) = (scene.names(), Vec::new(), Vec::new());
+    for text in &args.filter {
+        match Filter::parse(text, text, &names) {
+            Ok(filter) => filters.push(filter),
+            Err(problems) => wrong.extend(problems.into_iter().map(|problem| problem.on(format!("--filter {text:?}")))),
+        }
+    }
+    if wrong.is_empty() { Ok(filters) } else { Err(Error::Input(wrong)) }
 }
 
 fn info(
@@ -161,8 +178,9 @@ pub fn host() -> String {
 
 fn command(args: &RunArgs, settings: &Settings) -> String {
     let until = args.until.as_ref().map(|text| format!(" --until {text:?}")).unwrap_or_default();
+    let filters: String = args.filter.iter().map(|text| format!(" --filter {text:?}")).collect();
     format!(
-        "straylight run {} -o {} --rays {} --seed {}{until}{}",
+        "straylight run {} -o {} --rays {} --seed {}{until}{filters}{}",
         args.system.display(),
         args.output.display(),
         settings.rays,

@@ -6,7 +6,10 @@
 use super::measured::{Digits, grouped, measured};
 use super::picture::superscript;
 use super::share::shares;
-use crate::tally::results::{DetectorResult, Estimate, GuidanceResult, LedgerResult, PathResult, Results, RunInfo};
+use crate::packet::LONGEST_PATH;
+use crate::tally::results::{
+    DetectorResult, Estimate, FilterResult, GuidanceResult, LedgerResult, PathResult, Results, RunInfo,
+};
 
 /// The class that a designer meant; everything else is stray.
 pub const SIGNAL: &str = "signal";
@@ -29,6 +32,19 @@ pub fn sources(detector: &DetectorResult) -> Vec<(&str, Estimate)> {
     let mut rows: Vec<_> = detector.sources.iter().map(|(name, flux)| (name.as_str(), *flux)).collect();
     rows.sort_by(|a, b| number(a.0).total_cmp(&number(b.0)));
     if rows.len() > 1 { rows } else { Vec::new() }
+}
+
+/// What the filters mean of the light on a detector.
+pub fn filters<'a>(results: &'a Results, detector: &str) -> Vec<&'a FilterResult> {
+    results.filters.iter().filter(|filter| filter.detector == detector).collect()
+}
+
+/// What a filter could not decide, in words.
+pub fn open(filter: &FilterResult) -> String {
+    let more = measured(filter.open_w.mean, filter.open_w.error);
+    format!(
+        "{more} W more may be meant: they came on paths of more than {LONGEST_PATH} steps, which are not spelled out"
+    )
 }
 
 /// The figure of merit in words; `None` where the error is nothing or everything.

@@ -24,6 +24,7 @@ fn whole(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     heading(out, results, run)?;
     for (name, detector) in &results.detectors {
         key_numbers(out, name, detector, run)?;
+        filters(out, results, name)?;
         paths(out, results, name)?;
     }
     ledger(out, results)?;
@@ -86,6 +87,18 @@ fn key_numbers(out: &mut String, name: &str, detector: &DetectorResult, run: &Ru
     }
     for (source, flux) in digest::sources(detector) {
         writeln!(out, "  from {source:<14} {:>26} W", estimate(flux))?;
+    }
+    Ok(())
+}
+
+fn filters(out: &mut String, results: &Results, detector: &str) -> fmt::Result {
+    for filter in digest::filters(results, detector) {
+        let flux = filter.upper_limit_w.map_or_else(|| estimate(filter.flux_w), below);
+        let share = digest::rounded(filter.percent);
+        writeln!(out, "  filter {:?}: {flux} W, {share} %  ({})", filter.filter, filter.expression)?;
+        if filter.open_w.mean > 0.0 {
+            writeln!(out, "  ! {}", digest::open(filter))?;
+        }
     }
     Ok(())
 }

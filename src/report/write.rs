@@ -21,8 +21,10 @@ pub struct WriteError {
 /// The first file that could not be written; those before it stay.
 pub fn write(dir: &Path, results: &Results, run: &RunInfo) -> Result<Vec<PathBuf>, WriteError> {
     let mut folder = Folder::new(dir)?;
-    let stems = name::stems(results.maps.iter().map(|map| map.detector.as_str()));
-    for (map, stem) in results.maps.iter().zip(&stems) {
+    let maps: Vec<&MapResult> = results.maps.iter().chain(results.filters.iter().map(|filter| &filter.map)).collect();
+    let names: Vec<String> = maps.iter().map(|map| map_name(map)).collect();
+    let stems = name::stems(names.iter().map(String::as_str));
+    for (map, stem) in maps.into_iter().zip(&stems) {
         folder.map(map, stem, results, run)?;
     }
     folder.file("paths.csv", |out| paths::write(out, &results.paths))?;
@@ -30,6 +32,11 @@ pub fn write(dir: &Path, results: &Results, run: &RunInfo) -> Result<Vec<PathBuf
     folder.file("summary.json", |out| summary::write(out, results, run))?;
     atomic::settle(dir);
     Ok(folder.written)
+}
+
+/// What the files of a map are called after: its detector, and the filter whose light it is.
+fn map_name(map: &MapResult) -> String {
+    map.filter.iter().fold(map.detector.clone(), |name, filter| format!("{name}_{filter}"))
 }
 
 /// A folder that files are written into.

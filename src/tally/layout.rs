@@ -14,6 +14,8 @@ pub enum Cut {
     Scatters,
     /// The user's limit on reflections.
     Reflections,
+    /// The limit on reflections at surfaces that can transmit.
+    Ghosts,
     /// The limit on events of any kind.
     Events,
     /// Scatter switched off at a surface.
@@ -21,11 +23,12 @@ pub enum Cut {
 }
 
 impl Cut {
-    pub const ALL: [Cut; 5] = [Cut::Roulette, Cut::Scatters, Cut::Reflections, Cut::Events, Cut::ScatterOff];
+    pub const ALL: [Cut; 6] =
+        [Cut::Roulette, Cut::Scatters, Cut::Reflections, Cut::Ghosts, Cut::Events, Cut::ScatterOff];
 
     /// As the ledger writes it.
     pub fn label(self) -> &'static str {
-        ["roulette", "max_scatters", "max_reflections", "max_events", "scattering off"][self as usize]
+        ["roulette", "max_scatters", "max_reflections", "max_ghosts", "max_events", "scattering off"][self as usize]
     }
 }
 
@@ -63,6 +66,7 @@ pub struct Layout {
     first_row: usize,
     /// Whether what happened on the way is counted.
     events: bool,
+    filters: usize,
 }
 
 const CUTS: usize = Cut::ALL.len();
@@ -73,6 +77,8 @@ const TOTALS: usize = 7;
 const EVENTS: usize = 3;
 /// Per path row: flux, flux x optical path, then the coarse grid.
 const ROW: usize = 2 + PATH_GRID * PATH_GRID;
+/// Per filter and detector: flux, open flux, then the bins.
+const FILTER: usize = 2;
 
 impl Layout {
     pub const EMITTED: usize = 0;
@@ -95,7 +101,7 @@ impl Layout {
                 first
             })
             .collect();
-        Layout { parts, media, sources, detectors, bins, rows, first_row: next, events: false }
+        Layout { parts, media, sources, detectors, bins, rows, first_row: next, events: false, filters: 0 }
     }
 
     /// The same with slots for what happened on the way of stray light.
@@ -103,10 +109,37 @@ impl Layout {
         Layout { events: true, ..self }
     }
 
+    /// The same with slots for the light that each of so many filters means.
+    pub fn with_filters(self, filters: usize) -> Layout {
+        Layout { filters, ..self }
+    }
+
     /// Number of slots.
     pub fn len(&self) -> usize {
+        self.filter(self.bins.len(), 0)
+    }
+
+    /// First slot of the filters.
+    fn first_filter(&self) -> usize {
         let events = if self.events { self.bins.len() * self.events_each() } else { 0 };
         self.first_row + self.rows * ROW + events
+    }
+
+    /// Flux on a detector that a filter means.
+    pub fn filter(&self, detector: usize, filter: usize) -> usize {
+        let each = |bins: usize| FILTER + bins;
+        let before: usize = self.bins[..detector].iter().map(|&bins| self.filters * each(bins)).sum();
+        self.first_filter() + before + self.bins.get(detector).map_or(0, |&bins| filter * each(bins))
+    }
+
+    /// Flux on a detector of which it is open whether a filter means it.
+    pub fn filter_open(&self, detector: usize, filter: usize) -> usize {
+        self.filter(detector, filter) + 1
+    }
+
+    /// Flux in a bin of a detector that a filter means.
+    pub fn filter_bin(&self, detector: usize, filter: usize, bin: usize) -> usize {
+        self.filter(detector, filter) + FILTER + bin
     }
 
     /// Slots of the events of one detector.
@@ -222,7 +255,7 @@ mod tests {
 
     #[test]
     fn no_two_numbers_share_a_slot() {
-        let layout = Layout::new(3, 2, 4, vec![4, 5], 6).with_events();
+        let layout = Layout::new(3, 2, 4, vec![4, 5], 6).with_events().with_filters(3);
         let mut slots: Vec<usize> = (0..TOTALS).collect();
         slots.extend(layout.cuts().chain(layout.losses()).chain(layout.absorbers()));
         for d in 0..2 {
@@ -232,6 +265,10 @@ mod tests {
             slots.extend((0..4 * Class::COUNT).map(|i| layout.source_class(d, i / Class::COUNT, i % Class::COUNT)));
             slots.extend((0..layout.bins(d)).map(|b| layout.bin(d, b)));
             slots.extend(layout.stray(d).into_iter().flat_map(|first| [first, first + 1]));
+            for filter in 0..3 {
+                slots.extend([layout.filter(d, filter), layout.filter_open(d, filter)]);
+                slots.extend((0..layout.bins(d)).map(|b| layout.filter_bin(d, filter, b)));
+            }
             for event in [Event::Reflect, Event::Transmit, Event::Scatter, Event::Bulk] {
                 slots.extend((0..3).filter_map(|part| layout.event(d, part, event)));
             }

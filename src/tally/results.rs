@@ -83,6 +83,29 @@ pub struct GuidanceResult {
     pub targets: Vec<String>,
 }
 
+/// The light on a detector that a filter means, whatever rows the path table has.
+#[derive(Clone, Debug, Serialize)]
+pub struct FilterResult {
+    /// Name of the filter.
+    pub filter: String,
+    /// As written: see [`filter`](crate::filter).
+    pub expression: String,
+    pub detector: String,
+    pub flux_w: Estimate,
+    /// Of the detector's total, %.
+    pub percent: f64,
+    /// Contributing source rays.
+    pub rays: u64,
+    /// If nothing arrived: 3 x the largest flux that one source ray carries / N, W; else null.
+    pub upper_limit_w: Option<f64>,
+    /// Flux on paths of more steps than are spelled out, of which it is open whether they are meant, W; it is not in `flux_w`.
+    pub open_w: Estimate,
+    /// Brightest bin, in the unit of the map.
+    pub peak_w_m2: Peak,
+    #[serde(skip)]
+    pub map: MapResult,
+}
+
 /// One row of the path table.
 #[derive(Clone, Debug, Serialize)]
 pub struct PathResult {
@@ -110,6 +133,8 @@ pub struct PathResult {
 #[derive(Clone, Debug)]
 pub struct MapResult {
     pub detector: String,
+    /// Name of the filter whose light it is; `None`: all light.
+    pub filter: Option<String>,
     pub kind: MapKind,
     /// [rows, columns]; triangles as bins: [1, n].
     pub shape: [usize; 2],
@@ -165,6 +190,8 @@ pub struct Results {
     pub importance: Option<GuidanceResult>,
     /// Cells along each side of the grid on which a path's peak is given.
     pub path_grid: usize,
+    /// For every detector, what each filter means.
+    pub filters: Vec<FilterResult>,
     #[serde(skip)]
     pub paths: Vec<PathResult>,
     #[serde(skip)]

@@ -90,6 +90,7 @@ impl<'a, const V: usize> Book<'a, V> {
     pub fn counted(&mut self, scene: &Scene, detector: usize, ancestry: &Ancestry, flux: [f64; V], arrival: &Arrival) {
         let grid = &scene.detectors[detector].grid;
         let Some(bin) = grid.bin(arrival) else { return };
+        let ancestry = &*scene.ending(detector, ancestry);
         let Some(rows) = self.rows else {
             return self.candidates.note(detector, ancestry, flux.into_iter().fold(0.0, f64::max));
         };
@@ -102,6 +103,7 @@ impl<'a, const V: usize> Book<'a, V> {
         if let Some(stray) = self.layout.stray(detector).filter(|_| ancestry.class() != scene.image()) {
             self.events(detector, stray, ancestry, flux);
         }
+        self.filtered(scene, (detector, bin), ancestry, flux);
         match rows.find(detector, ancestry.key) {
             None => self.live.add(self.layout.other(detector), flux),
             Some(row) => {
@@ -112,10 +114,24 @@ impl<'a, const V: usize> Book<'a, V> {
         }
     }
 
+    /// Light in a bin of a detector that filters mean, or may mean.
+    fn filtered(&mut self, scene: &Scene, (detector, bin): (usize, usize), ancestry: &Ancestry, flux: [f64; V]) {
+        for (number, filter) in scene.filters.iter().enumerate() {
+            match filter.accepts(detector, ancestry) {
+                Some(false) => {}
+                Some(true) => {
+                    self.live.add(self.layout.filter(detector, number), flux);
+                    self.live.add(self.layout.filter_bin(detector, number, bin), flux);
+                }
+                None => self.live.add(self.layout.filter_open(detector, number), flux),
+            }
+        }
+    }
+
     /// Stray light and what happened on its way, once for every time that it did.
     fn events(&mut self, detector: usize, stray: usize, ancestry: &Ancestry, flux: [f64; V]) {
         self.live.add(stray, flux);
-        if ancestry.events as usize > ancestry.steps.len() {
+        if !ancestry.is_spelled() {
             self.live.add(stray + 1, flux);
         }
         for step in &ancestry.steps {

@@ -185,6 +185,10 @@ fn limit<const V: usize, W: Watch>(
         let cut = std::mem::replace(&mut bill.reflected, [Stokes::ZERO; V]);
         walk.book.cut(if spent { Cut::Events } else { Cut::Reflections }, cut.map(|light| light.i));
     }
+    if settings.max_ghosts.is_some_and(|most| ancestry.ghosts >= most) && !meeting.surfaces[0].opaque() {
+        let cut = std::mem::replace(&mut bill.reflected, [Stokes::ZERO; V]);
+        walk.book.cut(Cut::Ghosts, cut.map(|light| light.i));
+    }
     if spent {
         let cut = std::mem::replace(&mut bill.transmitted, [Stokes::ZERO; V]);
         walk.book.cut(Cut::Events, cut.map(|light| light.i));

@@ -46,7 +46,7 @@ impl Candidates {
     pub fn note(&mut self, detector: usize, ancestry: &Ancestry, flux: f64) {
         let [sum, squares] = self.arrivals.entry(detector).or_default();
         (*sum, *squares) = (*sum + flux, *squares + flux * flux);
-        if ancestry.events as usize > ancestry.steps.len() {
+        if !ancestry.is_spelled() {
             return;
         }
         let entry = self.paths.entry((detector, ancestry.key)).or_insert_with(|| (0.0, row(detector, ancestry)));

@@ -4,6 +4,7 @@ use super::Counts;
 use super::book::coarse_cell;
 use super::paths::Row;
 use crate::detector::Detector;
+use crate::filter::Filter;
 use crate::math::statistics::{student95, variance_of_variance};
 use crate::packet::{Class, Event, Step};
 use crate::scene::Scene;
@@ -69,8 +70,33 @@ pub fn results<const V: usize>(
         finishes: Vec::new(),
         importance: counts.guidance.clone(),
         path_grid: PATH_GRID,
+        filters: (0..scene.detectors.len()).flat_map(|d| teller.filters(d)).collect(),
         paths: (0..scene.detectors.len()).flat_map(|d| teller.paths(d)).collect(),
-        maps: (0..scene.detectors.len()).map(|d| teller.map(d)).collect(),
+        maps: (0..scene.detectors.len()).map(|d| teller.map(d, &|bin| layout.bin(d, bin))).collect(),
+    }
+}
+
+/// A map of a detector on which there is no light.
+pub fn empty_map(scene: &Scene, detector: usize) -> MapResult {
+    let detector = &scene.detectors[detector];
+    let grid = &detector.grid;
+    let bins = grid.shape().iter().product();
+    MapResult {
+        detector: detector.label.clone(),
+        filter: None,
+        kind: grid.kind(),
+        shape: grid.shape(),
+        axes: grid.axes(),
+        unit: grid.unit(),
+        mean: vec![0.0; bins],
+        error: vec![0.0; bins],
+        rays: vec![0; bins],
+        upper: vec![0.0; bins],
+        extent: (0..bins).map(|bin| grid.extent(bin)).collect(),
+        origin: (grid.origin() + scene.shift).to_array(),
+        column_direction: grid.frame().x.to_array(),
+        row_direction: grid.frame().y.to_array(),
+        side: detector.side.label(),
     }
 }
 
@@ -180,7 +206,7 @@ impl<const V: usize> Teller<'_, V> {
             interval95_w: flux_w.error * student95(self.sums().batches),
             rays,
             upper_limit_w: (rays == 0).then(|| self.upper()),
-            peak_w_m2: self.peak(d),
+            peak_w_m2: self.peak(d, &|bin| layout.bin(d, bin)),
             unit: self.scene.detectors[d].grid.unit().into(),
             brightest_batch: self.sums().brightest(slot, self.lane),
             variance_of_variance: variance_of_variance(self.counts.fluxes[d].iter().map(|flux| flux[self.lane])),
@@ -196,12 +222,13 @@ impl<const V: usize> Teller<'_, V> {
         3.0 * self.scene.sources.iter().map(|s| s.flux).sum::<f64>() / rays
     }
 
-    fn peak(&self, d: usize) -> Peak {
+    /// Brightest bin of a detector whose bins have these slots.
+    fn peak(&self, d: usize, slot: &dyn Fn(usize) -> usize) -> Peak {
         let grid = &self.scene.detectors[d].grid;
         let [_, columns] = grid.shape();
         let value = |bin: usize| {
             let extent = grid.extent(bin);
-            let estimate = self.estimate(self.counts.layout.bin(d, bin));
+            let estimate = self.estimate(slot(bin));
             if extent > 0.0 { [estimate.mean / extent, estimate.error / extent] } else { [0.0; 2] }
         };
         let bins = 0..self.counts.layout.bins(d);
@@ -212,29 +239,36 @@ impl<const V: usize> Teller<'_, V> {
         })
     }
 
-    fn map(&self, d: usize) -> MapResult {
-        let detector = &self.scene.detectors[d];
-        let grid = &detector.grid;
-        let bins = self.counts.layout.bins(d);
-        let upper = self.upper();
-        let mut map = MapResult {
-            detector: detector.label.clone(),
-            kind: grid.kind(),
-            shape: grid.shape(),
-            axes: grid.axes(),
-            unit: grid.unit(),
-            mean: vec![0.0; bins],
-            error: vec![0.0; bins],
-            rays: vec![0; bins],
-            upper: vec![0.0; bins],
-            extent: (0..bins).map(|bin| grid.extent(bin)).collect(),
-            origin: (grid.origin() + self.scene.shift).to_array(),
-            column_direction: grid.frame().x.to_array(),
-            row_direction: grid.frame().y.to_array(),
-            side: detector.side.label(),
+    /// What every filter means of the light on a detector.
+    fn filters(&self, d: usize) -> Vec<FilterResult> {
+        let layout = &self.counts.layout;
+        let total = self.estimate(layout.detector(d)).mean;
+        let result = |(number, filter): (usize, &Filter)| {
+            let flux_w = self.estimate(layout.filter(d, number));
+            let rays = self.sums().rays(layout.filter(d, number));
+            let slot = |bin: usize| layout.filter_bin(d, number, bin);
+            FilterResult {
+                filter: filter.label.clone(),
+                expression: filter.text.clone(),
+                detector: self.scene.detectors[d].label.clone(),
+                flux_w,
+                percent: if total > 0.0 { 100.0 * flux_w.mean / total } else { 0.0 },
+                rays,
+                upper_limit_w: (rays == 0).then(|| self.upper()),
+                open_w: self.estimate(layout.filter_open(d, number)),
+                peak_w_m2: self.peak(d, &slot),
+                map: MapResult { filter: Some(filter.label.clone()), ..self.map(d, &slot) },
+            }
         };
-        for bin in 0..bins {
-            let slot = self.counts.layout.bin(d, bin);
+        self.scene.filters.iter().enumerate().map(result).collect()
+    }
+
+    /// Map of a detector whose bins have these slots.
+    fn map(&self, d: usize, slot: &dyn Fn(usize) -> usize) -> MapResult {
+        let upper = self.upper();
+        let mut map = empty_map(self.scene, d);
+        for bin in 0..map.mean.len() {
+            let slot = slot(bin);
             let extent = map.extent[bin];
             map.rays[bin] = self.sums().rays(slot);
             if extent > 0.0 {

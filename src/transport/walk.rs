@@ -150,7 +150,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
 
     fn follow(&mut self, packet: &mut Packet<V>) {
         while self.survives(packet) {
-            self.watch.follows(&packet.ancestry);
+            self.watch.follows(&packet.ancestry, packet.flux());
             let goes_on = match &packet.film {
                 Some(film) => self.meet(packet, film.next()),
                 None => match self.fly(packet) {
@@ -239,7 +239,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
     pub fn found(&mut self, path: &Ancestry, flux: [f64; V]) {
         let Some(trail) = &self.trail else { return };
         let (detector, arrival) = (trail.detector, trail.arrival);
-        self.watch.arrives(detector, arrival.direction, flux.iter().fold(0.0, |most: f64, flux| most.max(*flux)));
+        self.watch.arrives(detector, &arrival, flux.iter().fold(0.0, |most: f64, flux| most.max(*flux)));
         self.book.counted(self.scene, detector, path, flux, &arrival);
     }
 
@@ -271,7 +271,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                 here.light = here.light.map(|light| light * left);
             }
             let arrival = Arrival { point, direction: packet.ray.direction, triangle: None };
-            self.watch.arrives(detector, packet.ray.direction, here.flux());
+            self.watch.arrives(detector, &arrival, here.flux());
             self.book.arrived(self.scene, detector, &here.ancestry, here.fluxes(), &arrival);
         }
     }
@@ -286,7 +286,7 @@ impl<'a, const V: usize, W: Watch> Walk<'a, V, W> {
                         direction: packet.ray.direction,
                         triangle: Some(hit.triangle),
                     };
-                    self.watch.arrives(detector as usize, packet.ray.direction, packet.flux());
+                    self.watch.arrives(detector as usize, &arrival, packet.flux());
                     self.book.arrived(self.scene, detector as usize, &packet.ancestry, packet.fluxes(), &arrival);
                 }
             }

@@ -1,5 +1,6 @@
 //! A look over the tracer's shoulder: for `straylight ray` and for tests. A run watches nothing, at no cost.
 
+use crate::detector::Arrival;
 use crate::geometry::{Left, Ray};
 use crate::packet::Ancestry;
 use glam::DVec3;
@@ -37,14 +38,14 @@ pub struct Sight {
 pub trait Watch {
     /// A packet sets off from what it has left.
     fn flight(&mut self, _ray: &Ray, _left: &Left) {}
-    /// The packet that the next event or escape is about.
-    fn follows(&mut self, _ancestry: &Ancestry) {}
+    /// The packet of this flux (W) that the next event, arrivals or escape are about.
+    fn follows(&mut self, _ancestry: &Ancestry, _flux: f64) {}
     /// A surface event. Called before branches are drawn.
     fn event(&mut self, _sight: impl FnOnce() -> Sight) {}
     /// A packet of this flux (W) is scattered at the origin of the ray on which it came, in a medium. Called before its way is drawn.
     fn scattered(&mut self, _ray: &Ray, _medium: u16, _flux: f64) {}
-    /// A packet of this flux (W) and direction arrives at a detector. Called before what is there acts on it.
-    fn arrives(&mut self, _detector: usize, _direction: DVec3, _flux: f64) {}
+    /// A packet of this flux (W) arrives at a detector. Called before what is there acts on it.
+    fn arrives(&mut self, _detector: usize, _arrival: &Arrival, _flux: f64) {}
     /// A packet left the scene.
     fn escaped(&mut self, _ray: Ray, _flux: f64) {}
 }

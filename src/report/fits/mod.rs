@@ -53,6 +53,9 @@ fn describe(header: &mut Header, name: &str, unit: &str, map: &MapResult) {
         header.text("BUNIT", unit, "unit of the values");
     }
     header.text("DETECTOR", &map.detector, "name in the system file");
+    if let Some(filter) = &map.filter {
+        header.text("FILTER", filter, "only the light that it means");
+    }
     for (index, axis) in map.axes.iter().flatten().enumerate() {
         linear(header, index + 1, axis);
     }

@@ -59,6 +59,7 @@ fn map(rows: usize, columns: usize) -> MapResult {
     let axis = |name: &str| Axis { name: name.into(), unit: "m", start: -1e-3 * columns as f64, step: 2e-3 };
     MapResult {
         detector: "focal plane 'A'".into(),
+        filter: None,
         kind: MapKind::Plane,
         shape: [rows, columns],
         axes: Some([axis("x"), axis("y")]),
@@ -93,6 +94,7 @@ fn file(map: &MapResult, system: &str) -> Vec<u8> {
         parameters: Default::default(),
         finishes: Vec::new(),
         importance: None,
+        filters: Vec::new(),
         inputs: Default::default(),
         path_grid: 16,
         paths: Vec::new(),

@@ -22,7 +22,45 @@ pub fn detector(results: &Results, index: usize, name: &str) -> Markup {
                     @if let Some(map) = map { (uncertainty(map)) }
                 }
             }
+            (filters(results, name))
             (paths::table(results, name))
+        }
+    }
+}
+
+/// The light that each filter means: how much, and where.
+fn filters(results: &Results, detector: &str) -> Markup {
+    let rows = digest::filters(results, detector);
+    html! {
+        @if !rows.is_empty() {
+            h3 { "Filters" }
+            table.classes {
+                thead { tr { th { "Filter" } th { "Light on its way" } th.right { "Flux" } th.right { "Share" } } }
+                tbody { @for row in &rows {
+                    tr {
+                        td { (row.filter) }
+                        td { code { (row.expression) } @if row.open_w.mean > 0.0 { p.note { (digest::open(row)) "." } } }
+                        td.right { @match row.upper_limit_w { Some(most) => { (limit(most, "W")) }, None => { (estimate(row.flux_w, "W")) } } }
+                        td.right { (digest::measured_percent(0.01 * row.percent)) }
+                    }
+                } }
+            }
+            div.small-maps { @for row in rows.iter().filter(|row| row.rays > 0) { (small(&row.map)) } }
+        }
+    }
+}
+
+/// A small map of filtered light.
+fn small(map: &MapResult) -> Markup {
+    let field = Field::of(map);
+    let scale = Scale::of(field.lit());
+    let name = map.filter.as_deref().unwrap_or_default();
+    html! {
+        figure.small {
+            h3 { (name) }
+            (figure::figure(&Figure {
+                field: &field, scale: &scale, palette: Palette::Light, unit: map.unit, title: name, longest: 230.0,
+            }))
         }
     }
 }

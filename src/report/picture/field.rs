@@ -188,6 +188,7 @@ mod tests {
         let bins = shape[0] * shape[1];
         MapResult {
             detector: "d".into(),
+            filter: None,
             kind,
             shape,
             axes: Some(axes),

@@ -75,8 +75,9 @@ impl<'a> Plot<'a> {
     fn draw(mut self, map: &MapResult, system: &str) -> Canvas {
         let quantity = if map.unit.ends_with("sr") { "intensity" } else { "irradiance" };
         let side = if map.side == "both" { "both sides".into() } else { format!("{} side", map.side) };
+        let light = map.filter.as_ref().map(|filter| format!(", {filter}")).unwrap_or_default();
         let fit = |text: String| text.chars().take(((self.canvas.width - 32) / LETTER[0]) as usize).collect::<String>();
-        let [title, subtitle] = [fit(format!("{}: {quantity}, {side}", map.detector)), fit(system.to_owned())];
+        let [title, subtitle] = [fit(format!("{}: {quantity}, {side}{light}", map.detector)), fit(system.to_owned())];
         self.canvas.text([16, 26], Anchor::Start, Weight::Bold, &title);
         self.canvas.text([16, 50], Anchor::Start, Weight::Regular, &subtitle);
         self.cells();
@@ -204,6 +205,7 @@ mod tests {
     fn map() -> MapResult {
         MapResult {
             detector: "d".into(),
+            filter: None,
             kind: MapKind::Plane,
             shape: [2, 3],
             axes: None,

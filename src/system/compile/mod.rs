@@ -8,6 +8,7 @@ mod coated;
 mod coatings;
 mod configure;
 mod exact;
+mod filters;
 mod glare;
 mod lights;
 mod mask;
@@ -188,10 +189,13 @@ fn build(document: &Document) -> Result<(Compiled, Assembly), Error> {
         solids: assigned.solids,
         sources,
         detectors,
+        filters: Vec::new(),
         targets,
         shift: assembly.shift,
         has_optics,
     };
+    let filters = filters::filters(&mut shop, &scene);
+    let scene = Scene { filters, ..scene };
     let settings = settings(document);
     shop.problems.extend(understanding::doubts(&scene, &assembly, document));
     let Shop { problems, inputs, .. } = shop;
@@ -220,6 +224,7 @@ fn settings(document: &Document) -> Settings {
         roulette: Roulette { below: run.roulette.below, survive: run.roulette.survive },
         max_scatters: run.max_scatters.map(|n| n.min(u16::MAX as u32) as u16),
         max_reflections: run.max_reflections,
+        max_ghosts: default.max_ghosts,
         max_events: run.max_events.unwrap_or(default.max_events),
         until: run.until.as_ref().and_then(|until| {
             let detector = document.system.detectors.position(&until.detector)?;

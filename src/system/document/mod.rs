@@ -99,6 +99,8 @@ pub struct System {
     pub glare: Names<Glare>,
     /// Detectors by name.
     pub detectors: Names<Detector>,
+    /// Expressions that choose light by its path, by name: see [`filter`](crate::filter).
+    pub filters: Names<String>,
     /// What surfaces may aim at, by name.
     pub targets: Names<Target>,
     /// How it is traced.

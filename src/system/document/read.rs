@@ -32,6 +32,7 @@ pub const SECTIONS: &[&str] = &[
     "sweeps",
     "glare",
     "detectors",
+    "filters",
     "targets",
     "run",
 ];
@@ -82,6 +83,7 @@ impl<'a> Reader<'a> {
             sweeps: self.map(root, "sweeps"),
             glare: self.map(root, "glare"),
             detectors: self.map(root, "detectors"),
+            filters: self.map(root, "filters"),
             targets: self.map(root, "targets"),
             run: self.single(root, "run").unwrap_or_default(),
             level: Level::default(),

@@ -4,6 +4,7 @@ use super::directions::Directions;
 use super::patches::Patches;
 use super::scout::{Scout, Sighting, Way, shining, wavelength};
 use super::{Importance, Learned, Lit, Map};
+use crate::detector::Arrival;
 use crate::math::Rng;
 use crate::math::rng::mix;
 use crate::packet::Ancestry;
@@ -288,7 +289,7 @@ struct Lantern<'a> {
 }
 
 impl Watch for Lantern<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         (self.source, self.scatters) = (ancestry.source, ancestry.scatters);
     }
 
@@ -313,9 +314,9 @@ impl Watch for Lantern<'_> {
         }
     }
 
-    fn arrives(&mut self, detector: usize, direction: DVec3, flux: f64) {
+    fn arrives(&mut self, detector: usize, arrival: &Arrival, flux: f64) {
         if self.scatters > 0 {
-            self.light.arrivals[detector].push((direction, flux));
+            self.light.arrivals[detector].push((arrival.direction, flux));
         }
     }
 }

@@ -54,7 +54,7 @@ pub struct Scout<'a> {
 }
 
 impl Watch for Scout<'_> {
-    fn follows(&mut self, ancestry: &Ancestry) {
+    fn follows(&mut self, ancestry: &Ancestry, _flux: f64) {
         self.way = match ancestry.steps.last() {
             None => Way::Straight(self.detector),
             Some(_) if ancestry.scatters > 0 || ancestry.steps.is_full() => Way::Scattered,

@@ -1,5 +1,9 @@
 //! Flux in flight: one packet of light and how it got here.
 
+mod class;
+
+pub use class::Class;
+
 use crate::film::Film;
 use crate::geometry::Left;
 use crate::geometry::Ray;
@@ -8,6 +12,7 @@ use crate::math::rng::mix;
 use crate::optics::Stokes;
 use arrayvec::ArrayVec;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// A packet of light. It carries its flux in `V` lanes, one per variant of the system (same geometry, other finish).
 #[derive(Clone, Debug)]
@@ -103,19 +108,24 @@ impl Event {
     }
 }
 
-/// A part, or for [`Event::Bulk`] a medium, and what it did, in one word.
+/// A part, or for [`Event::Bulk`] a medium, what it did and whether it was there to do so, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Step(u32);
 
 impl Step {
-    /// What part or medium `number` (below 2^30) did.
-    pub fn new(number: u32, event: Event) -> Step {
-        Step(number << 2 | event as u32)
+    /// What part or medium `number` (below 2^29) did. `intended`: this surface is there to do just that (a mirror reflects).
+    pub fn new(number: u32, event: Event, intended: bool) -> Step {
+        Step(number << 3 | (!intended as u32) << 2 | event as u32)
     }
 
     /// Index of the part or medium.
     pub fn number(self) -> u32 {
-        self.0 >> 2
+        self.0 >> 3
+    }
+
+    /// True for a reflection that nobody asked for: it makes a ghost.
+    pub fn is_ghost(self) -> bool {
+        self.event() == Event::Reflect && self.0 & 4 != 0
     }
 
     pub fn event(self) -> Event {
@@ -125,6 +135,9 @@ impl Step {
 
 /// Steps that a path key spells out; longer paths are booked in the row "other".
 pub const LONGEST_PATH: usize = 24;
+
+/// Reflections that a path spells out, however long it is.
+pub const MOST_REFLECTIONS: usize = 8;
 
 /// How a packet got here.
 #[derive(Clone, Debug)]
@@ -140,6 +153,8 @@ pub struct Ancestry {
     /// Hash of (source, steps so far): names the path.
     pub key: u64,
     pub steps: ArrayVec<Step, LONGEST_PATH>,
+    /// The first reflections of any kind, also where `steps` are full.
+    pub reflected: ArrayVec<Step, MOST_REFLECTIONS>,
     /// Reflections at surfaces that can transmit: the ghost order, and what the splitting budget counts.
     pub ghosts: u16,
     /// Scatter events.
@@ -163,6 +178,7 @@ impl Ancestry {
             events: 0,
             key: mix(source as u64 + 1),
             steps: ArrayVec::new(),
+            reflected: ArrayVec::new(),
             ghosts: 0,
             scatters: 0,
             reflections: 0,
@@ -175,11 +191,12 @@ impl Ancestry {
     /// Takes one more step. `intended`: this surface is there to do just that (a mirror reflects).
     pub fn step(&mut self, number: u32, event: Event, intended: bool) {
         self.events += 1;
-        let step = Step::new(number, event);
+        let step = Step::new(number, event, intended);
         self.spell(step);
         match event {
             Event::Reflect => {
                 self.reflections += 1;
+                let _ = self.reflected.try_push(step);
                 // Light trapped by total reflection can go round more often than that.
                 self.ghosts = self.ghosts.saturating_add(!intended as u16);
                 self.optics = true;
@@ -198,7 +215,13 @@ impl Ancestry {
         self.steps.iter().rev().for_each(|step| path.spell(*step));
         let scatters = |step: &&Step| matches!(step.event(), Event::Scatter | Event::Bulk);
         path.last_scatter = self.steps.iter().find(scatters).copied();
-        if self.events as usize > self.steps.len() {
+        path.reflected.reverse();
+        if !self.has_all_reflections() {
+            // Of many reflections the first ones are those of the steps.
+            let reflections = path.steps.iter().filter(|step| step.event() == Event::Reflect);
+            path.reflected = reflections.take(MOST_REFLECTIONS).copied().collect();
+        }
+        if !self.is_spelled() {
             // Longer paths have no row: a key that no path from a source has.
             path.key = 0;
         }
@@ -212,6 +235,43 @@ impl Ancestry {
         let _ = self.steps.try_push(step);
     }
 
+    /// The same path to a detector that watches the parts `watched`. Light is meant to end there: what they had reflected
+    /// before, like what an interface reflects, comes back as a ghost. Told from the reflections that are spelled out.
+    pub fn ending(&self, watched: impl Fn(u32) -> bool) -> Cow<'_, Ancestry> {
+        let back = |step: &Step| step.event() == Event::Reflect && !step.is_ghost() && watched(step.number());
+        let count = self.reflected.iter().filter(|step| back(step)).count() as u16;
+        if count == 0 {
+            return Cow::Borrowed(self);
+        }
+        let mut path = self.clone();
+        path.ghosts = path.ghosts.saturating_add(count);
+        for step in path.steps.iter_mut().chain(&mut path.reflected).filter(|step| back(step)) {
+            *step = Step::new(step.number(), Event::Reflect, false);
+        }
+        Cow::Owned(path)
+    }
+
+    /// True if `reflected` are all reflections.
+    pub fn has_all_reflections(&self) -> bool {
+        self.reflections as usize <= self.reflected.len()
+    }
+
+    /// True if `steps` is the whole path.
+    pub fn is_spelled(&self) -> bool {
+        self.events as usize <= self.steps.len()
+    }
+
+    /// Which events (indexed by [`Event`]) there may be among the steps that are not spelled out.
+    pub fn unspelled(&self) -> [bool; 4] {
+        if self.is_spelled() {
+            return [false; 4];
+        }
+        let count = |events: &[Event]| self.steps.iter().filter(|step| events.contains(&step.event())).count();
+        let reflected = self.reflections as usize > count(&[Event::Reflect]);
+        let scattered = self.scatters as usize > count(&[Event::Scatter, Event::Bulk]);
+        [reflected, true, scattered, scattered]
+    }
+
     /// Signal, leak, ghost or scatter: see [`Class`].
     pub fn class(&self) -> Class {
         match (self.scatters, self.ghosts) {
@@ -223,69 +283,9 @@ impl Ancestry {
     }
 }
 
-/// What kind of light arrived (PHYSICS: signal and stray).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Class {
-    /// Through the optics as the designer meant: transmissions and designed mirrors only.
-    Signal,
-    /// From the source without touching anything: a leak if the system has optics, else the signal.
-    Direct,
-    /// No scatter, n unintended reflections.
-    Ghost(u16),
-    /// n scatter events, whatever else.
-    Scatter(u16),
-}
-
-impl Class {
-    pub const MOST_GHOSTS: u16 = 6;
-    pub const MOST_SCATTERS: u16 = 8;
-    /// Number of classes.
-    pub const COUNT: usize = 2 + Self::MOST_GHOSTS as usize + Self::MOST_SCATTERS as usize;
-
-    /// 0..COUNT.
-    pub fn index(self) -> usize {
-        match self {
-            Class::Signal => 0,
-            Class::Direct => 1,
-            Class::Ghost(n) => 1 + n as usize,
-            Class::Scatter(n) => 1 + Self::MOST_GHOSTS as usize + n as usize,
-        }
-    }
-
-    /// Inverse of `index`.
-    pub fn from_index(index: usize) -> Class {
-        let ghosts = Self::MOST_GHOSTS as usize;
-        match index {
-            0 => Class::Signal,
-            1 => Class::Direct,
-            i if i < 2 + ghosts => Class::Ghost((i - 1) as u16),
-            i => Class::Scatter((i - 1 - ghosts) as u16),
-        }
-    }
-
-    /// As reports write it: "signal", "direct leak" ("direct" where nothing else could be the signal), "ghost 2", "scatter 8+".
-    pub fn label(self, has_optics: bool) -> String {
-        let more = |n: u16, most: u16| if n == most { format!("{n}+") } else { n.to_string() };
-        match self {
-            Class::Signal => "signal".into(),
-            Class::Direct if has_optics => "direct leak".into(),
-            Class::Direct => "direct".into(),
-            Class::Ghost(n) => format!("ghost {}", more(n, Self::MOST_GHOSTS)),
-            Class::Scatter(n) => format!("scatter {}", more(n, Self::MOST_SCATTERS)),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn classes_and_indices_are_inverse() {
-        for i in 0..Class::COUNT {
-            assert_eq!(Class::from_index(i).index(), i);
-        }
-    }
 
     #[test]
     fn different_paths_have_different_keys() {
@@ -315,6 +315,23 @@ mod tests {
         assert_eq!((there.class(), there.ghosts, there.source), (back.class(), back.ghosts, back.source));
         let long: Vec<_> = (0..30).map(|part| (part, Event::Transmit)).collect();
         assert_ne!(go(0, &mut long.iter()).reversed(0).key, go(0, &mut long.iter().rev()).key);
+    }
+
+    #[test]
+    fn what_a_detector_reflected_comes_back_to_it_as_a_ghost() {
+        let mut path = Ancestry::born(0, 0);
+        for (part, event, intended) in
+            [(1, Event::Transmit, false), (2, Event::Reflect, true), (1, Event::Reflect, false)]
+        {
+            path.step(part, event, intended);
+        }
+        assert_eq!((path.class(), path.ending(|part| part == 3).class()), (Class::Ghost(1), Class::Ghost(1)));
+        let seen = path.ending(|part| part == 2);
+        assert_eq!((seen.class(), seen.key), (Class::Ghost(2), path.key));
+        assert_eq!(
+            seen.reflected.iter().filter(|step| step.is_ghost()).map(|s| s.number()).collect::<Vec<_>>(),
+            [2, 1]
+        );
     }
 
     #[test]
