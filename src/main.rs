@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         Verb::Compare(args) => cli::compare::compare(&args),
         Verb::Sensitivity(args) => cli::sensitivity::sensitivity(&args),
         Verb::Pst(args) => cli::pst::pst(&args),
+        Verb::Ghosts(args) => cli::ghosts::ghosts(&args),
         Verb::Glare(args) => cli::glare::glare(&args),
         Verb::Check(args) => cli::check::check(&args),
         Verb::Ray(args) => cli::ray::ray(&args),

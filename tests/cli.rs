@@ -416,3 +416,33 @@ fn nothing_outside_the_folder_is_opened() {
         assert_eq!(got, code, "{uri}: {}", text(&output.stderr));
     }
 }
+
+#[test]
+fn ghosts_are_listed_by_their_surfaces() {
+    let folder = folder(GOOD);
+    let (code, output) = outcome(folder.path(), &["ghosts", "system.ron", "-o", "out", "--order", "1"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(code, 0, "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(text.contains("ghosts of up to 1 unintended reflections") && text.contains("report: out"), "{text}");
+    let written = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).expect(name);
+    let row =
+        written("ghosts.csv").lines().find(|row| row.starts_with("above,beam,1,block,")).expect("a row").to_owned();
+    assert!(row.split(',').nth(4).and_then(|flux| flux.parse::<f64>().ok()).is_some_and(|flux| flux > 0.04), "{row}");
+    assert!(written("ghosts.html").contains("lit by beam") && written("ghosts.json").contains("\"surfaces\""));
+    assert!(folder.path().join("out/above_beam_block.npy").exists());
+    assert_eq!(outcome(folder.path(), &["ghosts", "system.ron", "-o", "out", "--order", "7"]).0, 64);
+}
+
+#[test]
+fn a_filter_of_the_command_line_is_counted_or_refused() {
+    let folder = folder(GOOD);
+    let (code, output) =
+        outcome(folder.path(), &["run", "system.ron", "-o", "out", "--filter", "ghosts == 1 and block:R"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("filter \"ghosts == 1 and block:R\": "), "{text}");
+    let (code, output) = outcome(folder.path(), &["run", "system.ron", "-o", "out", "--filter", "blok:R"]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(code, 65);
+    assert!(told.contains("no part is called \"blok\"; did you mean \"block\"?"), "{told}");
+}

@@ -9,6 +9,7 @@ pub mod export;
 pub mod finishes;
 pub mod fit;
 pub mod fit_bsdf;
+pub mod ghosts;
 pub mod glare;
 pub mod import;
 mod optics;
@@ -56,6 +57,8 @@ pub enum Verb {
     Sensitivity(sensitivity::SensitivityArgs),
     /// Trace the sweeps of a system: point source transmittance over angle, against what is required
     Pst(pst::PstArgs),
+    /// Trace every ghost by itself, by the pair of surfaces that makes it: flux, peak, size, focus
+    Ghosts(ghosts::GhostsArgs),
     /// Trace a uniform field with a black patch: veiling glare index
     Glare(glare::GlareArgs),
     /// Say what was understood of a system, without tracing it

@@ -15,6 +15,7 @@ mod atomic;
 pub mod compare;
 mod digest;
 mod fits;
+pub mod ghosts;
 mod html;
 mod measured;
 mod name;

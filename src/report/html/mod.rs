@@ -5,6 +5,7 @@
 
 mod compare;
 mod figure;
+mod ghosts;
 mod ledger;
 mod number;
 mod overview;
@@ -14,6 +15,7 @@ mod reproduce;
 mod section;
 
 use crate::study::compare::Comparison;
+use crate::study::ghost::Ghosts;
 use crate::tally::results::{Results, RunInfo};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use pst::{curve_picture, pst_page, sky_picture};
@@ -38,6 +40,11 @@ pub fn page(results: &Results, run: &RunInfo) -> String {
 /// The page of a comparison.
 pub fn comparison(comparison: &Comparison, run: &RunInfo) -> String {
     whole(&comparison.system, &compare::body(comparison, run))
+}
+
+/// The page of a study of ghosts.
+pub fn ghosts(ghosts: &Ghosts, run: &RunInfo) -> String {
+    whole(&ghosts.system, &ghosts::body(ghosts, run))
 }
 
 fn whole(system: &str, body: &Markup) -> String {
