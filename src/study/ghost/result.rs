@@ -1,7 +1,7 @@
 //! From bundles per batch to ghosts with errors.
 //!
 //! A flux is a mean over batches. Centroid, radius and focus are functions of sums over all batches; their errors are by the jackknife
-//! over batches, var = (n - 1) / n sum (t_i - <t>)^2 with t_i the value without batch i (Efron & Stein, Ann. Stat. 9, 1981).
+//! over batches, var = (n - 1) / n sum (t_i - t)^2 with t_i the value without batch i and t their mean (Efron & Stein, Ann. Stat. 9, 1981).
 
 use super::arrivals::{Caught, Key};
 use super::bundle::{Bundle, Moments};
