@@ -117,6 +117,7 @@ fn stray(classes: &[(&str, f64, f64)]) -> StrayResult {
         signal_w: signal.map(|class| estimate(class.1, class.2)),
         to_signal: signal.map(|class| estimate(flux_w.mean / class.1, flux_w.error / class.1)),
         rays: 21_208,
+        brightest_batch: 0.02,
         upper_limit_w: 2.86e-9,
     }
 }
@@ -165,6 +166,7 @@ fn path(sequence: &str, class: &str, rays: u64, flux: Estimate, length: f64) -> 
         percent: 100.0 * flux.mean / 0.899_391,
         ghost_order: order("ghost"),
         scatter_order: order("scatter"),
+        reflectors: Vec::new(),
         last_scatter: if class.starts_with("scatter") { "Barrel".into() } else { String::new() },
         optical_path_m: length,
         peak_w_m2: 3.1e4 * flux.mean,

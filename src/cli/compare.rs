@@ -1,8 +1,8 @@
 //! `straylight compare`: trace the variants of a system and say what they change.
 
-use super::run::{Ticker, count, host, until, writable};
 use super::stop::Stop;
-use super::{Chosen, Ending, THREADS, say, tell, warn};
+use super::tracing::{Ticker, Tracing, info, until, writable};
+use super::{Ending, say, tell, warn};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -12,7 +12,6 @@ use straylight::settings::Settings;
 use straylight::study::compare::{Comparison, Step, compare as study};
 use straylight::system::compile::variants::{Lineup, lineup};
 use straylight::system::document::Document;
-use straylight::tally::results::RunInfo;
 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
@@ -22,20 +21,11 @@ pub struct CompareArgs {
     /// Folder for the report; made if it is not there
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// Source rays, instead of the system's own number: 1000000, 1_000_000 or 1e6
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub rays: Option<u64>,
-    /// Seed of the random numbers: same seed, same bits
-    #[arg(long, value_name = "S")]
-    pub seed: Option<u64>,
-    /// Threads, from 1 up; all cores if not given. The result does not depend on it
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(THREADS))]
-    pub threads: Option<u16>,
     /// Stop early at this relative standard error of all lanes: "1 % on fpa"
     #[arg(long, value_name = "ERROR")]
     pub until: Option<String>,
     #[command(flatten)]
-    pub chosen: Chosen,
+    pub tracing: Tracing,
 }
 
 const EXAMPLE: &str = "\
@@ -48,10 +38,10 @@ a folder with the report of it alone. `straylight run --variant NAME` traces one
 
 /// Compares.
 pub fn compare(args: &CompareArgs) -> Result<Ending, Error> {
-    if args.chosen.variant.is_some() {
+    if args.tracing.chosen.variant.is_some() {
         return Err(Error::Usage("--variant: all variants are compared; `straylight run` traces one".into()));
     }
-    let documents = Document::lineup(&args.system, &args.chosen.choice())?;
+    let documents = Document::lineup(&args.system, &args.tracing.chosen.choice())?;
     if documents.len() < 2 {
         let what = format!("{} has no `variants` to compare", args.system.display());
         return Err(Error::Usage(format!("{what}; `straylight schema` shows how they are written")));
@@ -62,8 +52,7 @@ pub fn compare(args: &CompareArgs) -> Result<Ending, Error> {
     let settings = settings(args, &lineup)?;
     writable(&args.output)?;
     let stop = Stop::listen();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0) as usize).build();
-    let pool = pool.map_err(|error| Error::Internal(format!("no threads: {error}")))?;
+    let pool = args.tracing.pool()?;
     let start = Instant::now();
     let ticker = Ticker::new(settings.batches() * settings.batch_rays() * lineup.traces.len() as u64);
     let tick = |step: &Step| {
@@ -76,7 +65,9 @@ pub fn compare(args: &CompareArgs) -> Result<Ending, Error> {
         say("interrupted: too little for an error bar, nothing is written\n");
         return Ok(Ending::Interrupted(stop.code()));
     };
-    let info = info(args, &comparison, pool.current_num_threads(), start.elapsed().as_secs_f64());
+    let rays = comparison.rays * comparison.traces as u64;
+    let command = command(args, &comparison);
+    let info = info(command, &pool, start, rays, comparison.segments, comparison.interrupted);
     tell(&report::compare::text(&comparison, &info));
     report::compare::comparison(&args.output, &comparison, &info)
         .map_err(|error| Error::Io { path: error.path, source: error.source })?;
@@ -90,33 +81,15 @@ pub fn compare(args: &CompareArgs) -> Result<Ending, Error> {
 
 fn settings(args: &CompareArgs, lineup: &Lineup) -> Result<Settings, Error> {
     let compiled = &lineup.traces[0].compiled;
-    let mut settings = compiled.settings.clone();
-    settings.rays = args.rays.unwrap_or(settings.rays);
-    settings.seed = args.seed.unwrap_or(settings.seed);
+    let mut settings = args.tracing.settings(&compiled.settings);
     if let Some(text) = &args.until {
         settings.until = Some(until(text, &compiled.scene)?);
     }
     Ok(settings)
 }
 
-fn info(args: &CompareArgs, comparison: &Comparison, threads: usize, seconds: f64) -> RunInfo {
+fn command(args: &CompareArgs, comparison: &Comparison) -> String {
     let until = args.until.as_ref().map(|text| format!(" --until {text:?}")).unwrap_or_default();
-    RunInfo {
-        version: env!("CARGO_PKG_VERSION").into(),
-        threads,
-        seconds,
-        rays_per_s: comparison.rays as f64 * comparison.traces as f64 / seconds,
-        segments: comparison.segments,
-        segments_per_s: comparison.segments as f64 / seconds,
-        host: host(),
-        interrupted: comparison.interrupted,
-        command: format!(
-            "straylight compare {} -o {} --rays {} --seed {}{until}{}",
-            args.system.display(),
-            args.output.display(),
-            comparison.rays_requested,
-            comparison.seed,
-            args.chosen.command()
-        ),
-    }
+    let traced = args.tracing.command(comparison.rays_requested, comparison.seed, &until);
+    format!("straylight compare {} -o {}{traced}", args.system.display(), args.output.display())
 }

@@ -1,8 +1,8 @@
 //! `straylight ghosts`: every ghost by the surfaces that make it.
 
-use super::run::{Ticker, count, host, writable};
 use super::stop::Stop;
-use super::{Chosen, Ending, THREADS, load, say, tell};
+use super::tracing::{Ticker, Tracing, info, writable};
+use super::{Ending, load, say, tell};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -10,7 +10,6 @@ use straylight::error::Error;
 use straylight::report;
 use straylight::settings::Settings;
 use straylight::study::ghost::{Ghosts, MOST_ORDER, ghosts as study};
-use straylight::tally::results::RunInfo;
 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
@@ -23,17 +22,8 @@ pub struct GhostsArgs {
     /// Most unintended reflections, 1 to 6: beyond 2 it takes long
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_ORDER)))]
     pub order: u16,
-    /// Source rays, instead of the system's own number: 1000000, 1_000_000 or 1e6
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub rays: Option<u64>,
-    /// Seed of the random numbers: same seed, same bits
-    #[arg(long, value_name = "S")]
-    pub seed: Option<u64>,
-    /// Threads, from 1 up; all cores if not given. The result does not depend on it
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(THREADS))]
-    pub threads: Option<u16>,
     #[command(flatten)]
-    pub chosen: Chosen,
+    pub tracing: Tracing,
 }
 
 const EXAMPLE: &str = "\
@@ -46,16 +36,11 @@ well as one of 1e-2. The folder gets ghosts.html (start there), ghosts.json, gho
 
 /// Traces the ghosts and says what they come to.
 pub fn ghosts(args: &GhostsArgs) -> Result<Ending, Error> {
-    let compiled = load(&args.system, &args.chosen)?;
-    let settings = Settings {
-        rays: args.rays.unwrap_or(compiled.settings.rays),
-        seed: args.seed.unwrap_or(compiled.settings.seed),
-        ..compiled.settings.clone()
-    };
+    let compiled = load(&args.system, &args.tracing.chosen)?;
+    let settings = args.tracing.settings(&compiled.settings);
     writable(&args.output)?;
     let stop = Stop::listen();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0) as usize).build();
-    let pool = pool.map_err(|error| Error::Internal(format!("no threads: {error}")))?;
+    let pool = args.tracing.pool()?;
     let start = Instant::now();
     let ticker = Ticker::new(settings.batches() * settings.batch_rays());
     let tick = |done: f64| ticker.tick(done, "");
@@ -66,7 +51,7 @@ pub fn ghosts(args: &GhostsArgs) -> Result<Ending, Error> {
         return Ok(Ending::Interrupted(stop.code()));
     };
     let found = Ghosts { inputs: compiled.inputs, ..found };
-    let info = info(args, &settings, &found, pool.current_num_threads(), start.elapsed().as_secs_f64());
+    let info = info(command(args, &settings), &pool, start, found.rays, found.segments, false);
     tell(&report::ghosts::text(&found, &info));
     report::ghosts::write(&args.output, &found, &info)
         .map_err(|error| Error::Io { path: error.path, source: error.source })?;
@@ -74,24 +59,8 @@ pub fn ghosts(args: &GhostsArgs) -> Result<Ending, Error> {
     Ok(if found.trusted { Ending::Done } else { Ending::Doubtful })
 }
 
-fn info(args: &GhostsArgs, settings: &Settings, found: &Ghosts, threads: usize, seconds: f64) -> RunInfo {
-    RunInfo {
-        version: env!("CARGO_PKG_VERSION").into(),
-        threads,
-        seconds,
-        rays_per_s: found.rays as f64 / seconds,
-        segments: found.segments,
-        segments_per_s: found.segments as f64 / seconds,
-        host: host(),
-        interrupted: false,
-        command: format!(
-            "straylight ghosts {} -o {} --order {} --rays {} --seed {}{}",
-            args.system.display(),
-            args.output.display(),
-            args.order,
-            settings.rays,
-            settings.seed,
-            args.chosen.command()
-        ),
-    }
+fn command(args: &GhostsArgs, settings: &Settings) -> String {
+    let (system, output, order) = (args.system.display(), args.output.display(), args.order);
+    let traced = args.tracing.command(settings.rays, settings.seed, "");
+    format!("straylight ghosts {system} -o {output} --order {order}{traced}")
 }

@@ -1,9 +1,9 @@
 //! `straylight glare`: the veiling glare index of a system.
 
-use super::run::count;
 use super::stop::Stop;
 use super::table::digits;
-use super::{Chosen, Ending, THREADS, load, say, tell};
+use super::tracing::Tracing;
+use super::{Ending, load, say, tell};
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -17,17 +17,8 @@ use straylight::study::glare::{Index, index};
 pub struct GlareArgs {
     /// System file (RON) with `glare`; `straylight schema` prints its grammar
     pub system: PathBuf,
-    /// Source rays of the field, and of the patch, instead of the system's own number
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub rays: Option<u64>,
-    /// Seed of the random numbers: same seed, same bits
-    #[arg(long, value_name = "S")]
-    pub seed: Option<u64>,
-    /// Threads, from 1 up; all cores if not given. The result does not depend on it
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(THREADS))]
-    pub threads: Option<u16>,
     #[command(flatten)]
-    pub chosen: Chosen,
+    pub tracing: Tracing,
 }
 
 const EXAMPLE: &str = "\
@@ -35,26 +26,21 @@ Example:
   straylight glare system.ron
 
 VGI = irradiance in the image of a black patch in a uniform field / irradiance there without the patch (ISO 9358).
-The detector must lie within the image of the patch.";
+The detector must lie within the image of the patch. Field and patch have so many rays each.";
 
 /// Part of the index above which the image of the field is worth a warning.
 const IMAGE: f64 = 1e-3;
 
 /// Traces the fields and says what they come to.
 pub fn glare(args: &GlareArgs) -> Result<Ending, Error> {
-    let mut compiled = load(&args.system, &args.chosen)?;
+    let mut compiled = load(&args.system, &args.tracing.chosen)?;
     if compiled.glare.is_empty() {
         let problem = Problem::error("the system has no field with a black patch").in_file(&args.system);
         return Err(Error::Input(vec![problem.expecting("`glare: {..}`")]));
     }
-    let settings = Settings {
-        rays: args.rays.unwrap_or(compiled.settings.rays),
-        seed: args.seed.unwrap_or(compiled.settings.seed),
-        ..compiled.settings.clone()
-    };
+    let settings = args.tracing.settings(&compiled.settings);
     let stop = Stop::listen();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0) as usize).build();
-    let pool = pool.map_err(|error| Error::Internal(format!("no threads: {error}")))?;
+    let pool = args.tracing.pool()?;
     let mut trusted = true;
     for glare in &compiled.glare {
         let scene = &mut compiled.scene;

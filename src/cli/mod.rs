@@ -21,6 +21,7 @@ pub mod schema;
 pub mod sensitivity;
 mod stop;
 mod table;
+mod tracing;
 pub mod view;
 
 use clap::{Args, Parser, Subcommand};

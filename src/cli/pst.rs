@@ -1,8 +1,8 @@
 //! `straylight pst`: point source transmittance over the sweeps of a system, held against what is required.
 
-use super::run::{count, host, writable};
 use super::stop::Stop;
-use super::{Chosen, Ending, THREADS, load, say, tell};
+use super::tracing::{Tracing, host, writable};
+use super::{Ending, load, say, tell};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,20 +24,11 @@ pub struct PstArgs {
     /// One of the sweeps; all of them if not given
     #[arg(long, value_name = "NAME")]
     pub sweep: Option<String>,
-    /// Source rays of a direction at most, instead of the system's number: 1000000, 1_000_000 or 1e6; rounded up to whole rounds
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub rays: Option<u64>,
     /// Relative standard error of the PST at which a direction is known well enough
     #[arg(long, value_name = "ERROR", default_value = "10 %", value_parser = percent)]
     pub until: f64,
-    /// Seed of the random numbers: same seed, same bits
-    #[arg(long, value_name = "S")]
-    pub seed: Option<u64>,
-    /// Threads, from 1 up; all cores if not given. The result does not depend on it
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(THREADS))]
-    pub threads: Option<u16>,
     #[command(flatten)]
-    pub chosen: Chosen,
+    pub tracing: Tracing,
 }
 
 const EXAMPLE: &str = "\
@@ -45,7 +36,7 @@ Example:
   straylight pst systems/star_tracker/system.ron -o report --until \"10 %\"
 
 PST = mean irradiance on the detector / irradiance across the beam. All directions are traced in rounds; each
-round doubles the rays of those that are not yet known well enough. The same command with more --rays or a smaller
+round doubles the rays of those that are not yet known well enough, up to --rays of a direction. The same command with more --rays or a smaller
 --until goes on where this one ended, to the same bits as if it had been asked for at once.
 
 The folder gets pst.html (start there), pst.csv, pst.json, and a picture of each sweep. Ctrl-C writes the rounds
@@ -65,23 +56,18 @@ fn percent(text: &str) -> Result<f64, String> {
 
 /// Traces the sweeps and writes what they come to.
 pub fn pst(args: &PstArgs) -> Result<Ending, Error> {
-    let mut compiled = load(&args.system, &args.chosen)?;
+    let mut compiled = load(&args.system, &args.tracing.chosen)?;
     let sweeps = chosen(args, &compiled)?;
-    let settings = Settings {
-        rays: args.rays.unwrap_or(compiled.settings.rays),
-        seed: args.seed.unwrap_or(compiled.settings.seed),
-        ..compiled.settings.clone()
-    };
+    let settings = args.tracing.settings(&compiled.settings);
     // Before the work, not after it.
     writable(&args.output)?;
     let stop = Stop::listen();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0) as usize).build();
-    let pool = pool.map_err(|error| Error::Internal(format!("no threads: {error}")))?;
+    let pool = args.tracing.pool()?;
     let start = Instant::now();
     let file = args.output.join(KEPT);
     let text = std::fs::read_to_string(&file).unwrap_or_default();
     // A variant is in the system's file beside the others: the hash of the file does not tell which it is.
-    let of = format!("{} {:?}", fingerprint(&compiled, &settings), args.chosen.variant);
+    let of = format!("{} {:?}", fingerprint(&compiled, &settings), args.tracing.chosen.variant);
     let mut kept = Kept::read(&text, of);
     if kept.sweeps.is_empty() && !text.is_empty() {
         say("what the folder keeps is of another system, variant, seed or version: it is traced anew\n");
@@ -164,13 +150,7 @@ fn so_far(plan: &Plan, rounds: &[Round]) -> String {
 
 fn command(args: &PstArgs, settings: &Settings) -> String {
     let sweep = args.sweep.as_ref().map_or(String::new(), |name| format!(" --sweep {name:?}"));
-    format!(
-        "straylight pst {} -o {}{sweep} --rays {} --until \"{} %\" --seed {}{}",
-        args.system.display(),
-        args.output.display(),
-        settings.rays,
-        report::measured(100.0 * args.until, 0.0),
-        settings.seed,
-        args.chosen.command()
-    )
+    let until = format!("{sweep} --until \"{} %\"", report::measured(100.0 * args.until, 0.0));
+    let traced = args.tracing.command(settings.rays, settings.seed, &until);
+    format!("straylight pst {} -o {}{traced}", args.system.display(), args.output.display())
 }

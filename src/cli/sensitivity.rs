@@ -1,15 +1,14 @@
 //! `straylight sensitivity`: which surface to improve first.
 
-use super::run::{Ticker, count, host, until, writable};
 use super::stop::Stop;
-use super::{Chosen, Ending, THREADS, load, say, tell};
+use super::tracing::{Ticker, Tracing, info, until, writable};
+use super::{Ending, load, say, tell};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 use straylight::error::Error;
 use straylight::report;
 use straylight::study::sensitivity::{Sensitivity, sensitivity as study};
-use straylight::tally::results::RunInfo;
 use straylight::transport::Progress;
 
 #[derive(Args)]
@@ -20,20 +19,11 @@ pub struct SensitivityArgs {
     /// Folder for the tables; made if it is not there
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// Source rays, instead of the system's own number: 1000000, 1_000_000 or 1e6
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub rays: Option<u64>,
-    /// Seed of the random numbers: same seed, same bits
-    #[arg(long, value_name = "S")]
-    pub seed: Option<u64>,
-    /// Threads, from 1 up; all cores if not given. The result does not depend on it
-    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(THREADS))]
-    pub threads: Option<u16>,
     /// Stop early at this relative standard error: "1 % on fpa"
     #[arg(long, value_name = "ERROR")]
     pub until: Option<String>,
     #[command(flatten)]
-    pub chosen: Chosen,
+    pub tracing: Tracing,
 }
 
 const EXAMPLE: &str = "\
@@ -45,17 +35,14 @@ with that surface's reflectance, transmittance and scatter. The folder gets sens
 
 /// Runs it.
 pub fn sensitivity(args: &SensitivityArgs) -> Result<Ending, Error> {
-    let compiled = load(&args.system, &args.chosen)?;
-    let mut settings = compiled.settings.clone();
-    settings.rays = args.rays.unwrap_or(settings.rays);
-    settings.seed = args.seed.unwrap_or(settings.seed);
+    let compiled = load(&args.system, &args.tracing.chosen)?;
+    let mut settings = args.tracing.settings(&compiled.settings);
     if let Some(text) = &args.until {
         settings.until = Some(until(text, &compiled.scene)?);
     }
     writable(&args.output)?;
     let stop = Stop::listen();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0) as usize).build();
-    let pool = pool.map_err(|error| Error::Internal(format!("no threads: {error}")))?;
+    let pool = args.tracing.pool()?;
     let start = Instant::now();
     let ticker = Ticker::new(settings.batches() * settings.batch_rays());
     let tick = |p: &Progress<1>| ticker.tick(p.batches as f64 / p.of as f64, "");
@@ -65,31 +52,15 @@ pub fn sensitivity(args: &SensitivityArgs) -> Result<Ending, Error> {
         say("interrupted: too little for an error bar, nothing is written\n");
         return Ok(Ending::Interrupted(stop.code()));
     };
-    let info = info(args, &found, pool.current_num_threads(), start.elapsed().as_secs_f64());
+    let info = info(command(args, &found), &pool, start, found.rays, found.segments, found.interrupted);
     tell(&report::sensitivity::text(&found, &info));
     report::sensitivity::write(&args.output, &found, &info)
         .map_err(|error| Error::Io { path: error.path, source: error.source })?;
     Ok(if found.interrupted { Ending::Interrupted(stop.code()) } else { Ending::Done })
 }
 
-fn info(args: &SensitivityArgs, found: &Sensitivity, threads: usize, seconds: f64) -> RunInfo {
+fn command(args: &SensitivityArgs, found: &Sensitivity) -> String {
     let until = args.until.as_ref().map(|text| format!(" --until {text:?}")).unwrap_or_default();
-    RunInfo {
-        version: env!("CARGO_PKG_VERSION").into(),
-        threads,
-        seconds,
-        rays_per_s: found.rays as f64 / seconds,
-        segments: found.segments,
-        segments_per_s: found.segments as f64 / seconds,
-        host: host(),
-        interrupted: found.interrupted,
-        command: format!(
-            "straylight sensitivity {} -o {} --rays {} --seed {}{until}{}",
-            args.system.display(),
-            args.output.display(),
-            found.rays_requested,
-            found.seed,
-            args.chosen.command()
-        ),
-    }
+    let traced = args.tracing.command(found.rays_requested, found.seed, &until);
+    format!("straylight sensitivity {} -o {}{traced}", args.system.display(), args.output.display())
 }

@@ -161,6 +161,8 @@ impl Rule {
             Rule::Not(rule) => rule.holds(detector, path).map(|yes| !yes),
             Rule::Class(word, image) => Some(word.names(path.class(), *image)),
             Rule::Count(count, comparison, number) => Some(comparison.holds(count.of(path), *number)),
+            // What is not spelled out of a path that was found from its end is its beginning.
+            Rule::Ghost(_) | Rule::Chain(_) if !path.is_spelled() && path.key == 0 => None,
             Rule::Ghost(parts) => ghost(parts, path),
             Rule::Chain(chain) => chain.holds(detector, path),
             Rule::Met(met) => met.holds(detector, path),

@@ -62,11 +62,16 @@ fn cause(path: &PathResult) -> String {
     match (path.scatter_order, last) {
         (1, Some((name, "V"))) => format!("one scatter in {name}"),
         (1, Some((name, _))) => format!("one scatter off {name}"),
-        (2, Some((name, _))) => format!("two scatters, the last off {name}"),
-        (n, Some((name, _))) => format!("{n} scatters, the last off {name}"),
+        (n, Some((name, event))) => {
+            let count = if n == 2 { "two".into() } else { n.to_string() };
+            format!("{count} scatters, the last {} {name}", if event == "V" { "in" } else { "off" })
+        }
         (_, None) if path.ghost_order > 0 => {
-            let mirrors: Vec<&str> = steps().filter(|step| step.1 == "R").map(|step| step.0).collect();
-            format!("a ghost of {} reflections: {}", path.ghost_order, mirrors.join(", "))
+            let by = path.reflectors.join(", ");
+            match path.ghost_order {
+                1 => format!("a ghost of one reflection: {by}"),
+                n => format!("a ghost of {n} reflections: {by}"),
+            }
         }
         (_, None) => "light straight from the source".into(),
     }
@@ -110,6 +115,7 @@ mod tests {
             percent: 0.0,
             ghost_order: ghosts,
             scatter_order: scatters,
+            reflectors: vec!["L2".into(), "L1".into()],
             last_scatter: String::new(),
             optical_path_m: 0.0,
             peak_w_m2: 0.0,

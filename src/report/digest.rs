@@ -4,12 +4,13 @@
 //! so the sum of the errors is given: by the triangle inequality the true error is never larger.
 
 use super::cause::is_meant;
-use super::measured::{Digits, grouped, measured};
+use super::measured::{Digits, below, grouped, measured};
 use super::picture::superscript;
 use super::share::shares;
 use crate::packet::LONGEST_PATH;
 use crate::tally::results::{
-    DetectorResult, Estimate, FilterResult, GuidanceResult, LedgerResult, PathResult, Results, RunInfo,
+    DetectorResult, Estimate, FilterResult, GuidanceResult, LedgerResult, PathResult, RequirementResult, Results,
+    RunInfo,
 };
 
 /// Lost flux above this part of the emitted flux is worth a warning.
@@ -66,6 +67,25 @@ pub fn counted(detector: &DetectorResult) -> Vec<(String, Estimate, &str)> {
     let all = counted.map(|counted| ("counted".into(), counted.total, unit));
     let regions = detector.regions.iter().map(|(name, value)| (format!("in {name}"), *value, unit));
     all.into_iter().chain(regions).collect()
+}
+
+/// What was found of what is required: a value, or what it is below; nothing without signal.
+pub fn required(row: &RequirementResult) -> String {
+    match row.value {
+        None => "no signal".into(),
+        Some(value) if value.mean > 0.0 => measured(value.mean, value.error),
+        Some(_) => below(row.required.limit / row.required.margin),
+    }
+}
+
+/// "4.4" times of room, or what is too much.
+pub fn margin(row: &RequirementResult) -> String {
+    row.value.map_or("-".into(), |_| measured(rounded(row.required.margin), 0.0))
+}
+
+/// Stray over signal, where there is stray light.
+pub fn stray_to_signal(detector: &DetectorResult) -> Option<Estimate> {
+    detector.stray.to_signal.filter(|ratio| ratio.mean > 0.0)
 }
 
 /// The largest arrival in words.
@@ -169,8 +189,8 @@ pub fn pixels(detector: &DetectorResult) -> Verdict {
 pub fn closure(ledger: &LedgerResult) -> Verdict {
     let (residual, emitted) = (ledger.residual, ledger.emitted.mean.abs());
     let rounding = residual.mean.abs() <= 1e-9 * emitted; // 1e-9: sums of up to 1e12 terms of f64
-    let good = rounding || residual.mean.abs() <= 4.0 * residual.error;
-    let how = match (rounding, residual.error > 0.0) {
+    let good = ledger.closes();
+    let how = match (rounding && good, residual.error > 0.0) {
         (true, _) => "to rounding".into(),
         (false, true) => format!("with a residual of {:.1} σ", residual.mean.abs() / residual.error),
         (false, false) => format!("with a residual of {} W", measured(residual.mean, 0.0)),

@@ -23,7 +23,7 @@ fn whole(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     for (name, found) in &results.detectors {
         let flux = found.upper_limit_w.map_or_else(|| measured(found.flux_w.mean, found.flux_w.error), below);
         writeln!(out, "## {}\n\n- flux {flux} W", plain(name))?;
-        if let Some(ratio) = found.stray.to_signal {
+        if let Some(ratio) = digest::stray_to_signal(found) {
             writeln!(out, "- stray / signal {}", measured(ratio.mean, ratio.error))?;
         }
         for cause in causes(results, name).iter().take(3) {
@@ -52,10 +52,10 @@ fn requirements(out: &mut String, results: &Results) -> fmt::Result {
     }
     writeln!(out, "| requirement | found | limit | margin | verdict |\n|---|---:|---:|---:|---|")?;
     for row in &results.requirements {
-        let found = row.value.map_or("no signal".into(), |value| measured(value.mean, value.error));
+        let found = digest::required(row);
         let about = format!("{}: {} on {}", row.name, row.quantity, row.detector);
         let (required, unit) = (&row.required, &row.unit);
-        let margin = measured(digest::rounded(required.margin), 0.0);
+        let margin = digest::margin(row);
         let limit = measured(required.limit, 0.0);
         writeln!(out, "| {} | {found} {unit} | {limit} {unit} | {margin} × | {} |", plain(&about), required.verdict)?;
     }
@@ -66,6 +66,9 @@ fn closing(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
     writeln!(out, "## Assumed\n")?;
     for [heading, text] in &results.assumptions {
         writeln!(out, "- {heading}: {}", plain(text))?;
+    }
+    if run.interrupted {
+        writeln!(out, "\nInterrupted: this holds the batches that were finished.")?;
     }
     let trust = if results.trusted { "Sound" } else { "Not to be trusted" };
     let [closure, losses] = [digest::closure(&results.ledger_w), digest::losses(&results.ledger_w)];
@@ -79,5 +82,6 @@ fn closing(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
 
 /// Text in which nothing is taken for a mark of the language.
 fn plain(text: &str) -> String {
-    text.replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;").replace('*', "\\*").replace('\n', " ")
+    let marked = |c: char| "\\|*_`[]#&<".contains(c);
+    text.replace('\n', " ").chars().flat_map(|c| marked(c).then_some('\\').into_iter().chain([c])).collect()
 }

@@ -69,6 +69,7 @@ mod tests {
             percent: 100.0 / 3.0,
             ghost_order: 0,
             scatter_order: 0,
+            reflectors: Vec::new(),
             last_scatter: String::new(),
             optical_path_m: 0.123,
             peak_w_m2: 4.0,

@@ -64,8 +64,8 @@ fn heading(out: &mut String, results: &Results, run: &RunInfo) -> fmt::Result {
 fn requirements(out: &mut String, results: &Results) -> fmt::Result {
     for row in &results.requirements {
         let RequirementResult { name, quantity, detector, unit, required, .. } = row;
-        let found = row.value.map_or("no signal".into(), estimate);
-        let (limit, margin) = (measured(required.limit, 0.0), measured(digest::rounded(required.margin), 0.0));
+        let (found, margin) = (digest::required(row), digest::margin(row));
+        let limit = measured(required.limit, 0.0);
         writeln!(
             out,
             "{}: {name}: {quantity} on {detector} {found} {unit}, limit {limit} {unit}, margin {margin} x",
@@ -83,11 +83,11 @@ fn key_numbers(out: &mut String, results: &Results, run: &RunInfo, name: &str) -
     };
     writeln!(out, "\n{name}: {flux} W")?;
     said(out, digest::resolution(detector))?;
-    for (what, value, unit) in digest::counted(detector) {
-        writeln!(out, "  {what}: {} {unit}", estimate(value))?;
-    }
     if detector.upper_limit_w.is_some() {
         return Ok(());
+    }
+    for (what, value, unit) in digest::counted(detector) {
+        writeln!(out, "  {what}: {} {unit}", estimate(value))?;
     }
     said(out, digest::pixels(detector))?;
     let [row, column] = detector.peak_w_m2.pixel;
@@ -97,7 +97,7 @@ fn key_numbers(out: &mut String, results: &Results, run: &RunInfo, name: &str) -
         "  brightest bin: {peak} {} at row {row}, column {column} (a maximum is biased upward)",
         detector.unit
     )?;
-    if let Some(ratio) = detector.stray.to_signal {
+    if let Some(ratio) = digest::stray_to_signal(detector) {
         writeln!(out, "  stray / signal: {}", estimate(ratio))?;
     }
     if let Some(cause) = causes(results, name).first() {

@@ -34,6 +34,14 @@ pub struct LedgerResult {
     pub residual: Estimate,
 }
 
+impl LedgerResult {
+    /// Whether the residual is one of chance or of rounding: within five sigma, which one run in two million exceeds, or 1e-12 of all,
+    /// the rounding of a sum of many small terms.
+    pub fn closes(&self) -> bool {
+        self.residual.mean.abs() <= 5.0 * self.residual.error + 1e-12 * self.emitted.mean
+    }
+}
+
 /// The brightest bin. A maximum is biased upward by noise: `error` is that of the bin, not of the maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Peak {
@@ -108,6 +116,8 @@ pub struct StrayResult {
     pub to_signal: Option<Estimate>,
     /// Source rays that brought stray light, at least: those of the class that has most.
     pub rays: u64,
+    /// Share of it that its brightest batch brought.
+    pub brightest_batch: f64,
     /// 3 x the largest flux that one source ray carries / N, W: what may be hidden where nothing arrived.
     pub upper_limit_w: f64,
 }
@@ -196,6 +206,8 @@ pub struct PathResult {
     pub percent: f64,
     pub ghost_order: u32,
     pub scatter_order: u32,
+    /// Names of the surfaces that reflected what they should not, in the order of the light.
+    pub reflectors: Vec<String>,
     /// Name of the last surface that scattered, empty if none did.
     pub last_scatter: String,
     /// Flux-weighted mean optical path, m.
@@ -237,6 +249,20 @@ pub struct MapResult {
     pub row_direction: [f64; 3],
     /// Seen from this side (front: looking against the detector's normal).
     pub side: &'static str,
+}
+
+impl MapResult {
+    /// What it shows, by its unit.
+    pub fn quantity(&self) -> &'static str {
+        match self.unit {
+            "W/sr" => "Radiant intensity",
+            "cd" => "Luminous intensity",
+            "lx" => "Illuminance",
+            "ph/s/px" => "Photon rate",
+            "e-/s/px" => "Electron rate",
+            _ => "Irradiance",
+        }
+    }
 }
 
 /// Everything that depends only on system, seed and rays.

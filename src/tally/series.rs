@@ -30,6 +30,12 @@ pub fn mean(values: &[f64]) -> Estimate {
     Estimate { mean, error }
 }
 
+/// Share of the largest in the sum; 0 if there is none.
+pub fn brightest(values: &[f64]) -> f64 {
+    let sum: f64 = values.iter().sum();
+    if sum > 0.0 { values.iter().copied().fold(0.0, f64::max) / sum } else { 0.0 }
+}
+
 /// mean y / mean x, dimensionless, with its error; `None` if x is zero.
 pub fn ratio(x: &[f64], y: &[f64]) -> Option<Estimate> {
     let n = x.len() as f64;

@@ -56,6 +56,9 @@ fn agreement(detector: &DetectorResult) -> f64 {
 }
 
 fn halves(detector: &DetectorResult) -> String {
+    if detector.convergence.halves_w.iter().any(|half| half.error <= 0.0) {
+        return "The run is too short for a comparison of its halves.".into();
+    }
     let sigma = agreement(detector);
     let verb = if sigma <= 3.0 { "agree" } else { "do not agree" };
     format!("The two halves of the run {verb}: {sigma:.1} σ apart.")

@@ -152,7 +152,7 @@ fn row(ghost: &Ghost) -> Markup {
             td.right { @if let Some([x, y]) = ghost.centroid_m { (format!("{:.3}, {:.3}", 1e3 * x.mean, 1e3 * y.mean)) } }
             td.right { (known(ghost.rms_radius_m, 1e3)) }
             td.right { @if let Some([width, height]) = ghost.size_m { (format!("{:.2} × {:.2}", 1e3 * width, 1e3 * height)) } }
-            td.right { @if ghost.centroid_m.is_some() && ghost.focus_m.is_none() { "parallel" } @else { (known(ghost.focus_m, 1e3)) } }
+            td.right { @if ghost.parallel { "parallel" } @else { (known(ghost.focus_m, 1e3)) } }
         }
     }
 }

@@ -74,11 +74,17 @@ fn first_order(view: &View, found: &Objects) -> Markup {
                         td.gauge { (gauge(first.flux_w.mean / largest, BOTH)) }
                     } } }
                 }
+                (more(view.first_order.len()))
                 p.note { "The first are candidates for a baffle, a stop or a better finish. The flux on the detector is a rank, no result: lobes, and that lit and seen "
                     "places of an object may differ, are in a run only." }
             }
         }
     }
+}
+
+/// What a table that has room for [`LISTED`] of so many rows leaves out.
+fn more(rows: usize) -> Markup {
+    html! { @if rows > LISTED { p.note { (rows - LISTED) " more are in objects.csv." } } }
 }
 
 fn seen(view: &View) -> Markup {
@@ -99,6 +105,7 @@ fn seen(view: &View) -> Markup {
             } }
             tr { td { "Open sky" } (ways(&view.sky_sr)) td.right { (cell(view.escaped_sr)) } td.gauge style=(GAUGE) { (gauge(total(&view.sky_sr) / largest, SEEN)) } } }
         }
+        (more(view.seen.iter().filter(|seen| seen.upper_limit_sr.is_none()).count()))
         p.note { "Flux on the detector = radiance of the object × " (plain(1e6 * view.area_m2, "mm2")) " × solid angle. Of " (plain(view.whole_sr, "sr"))
             ", " (estimate(view.absorbed_sr, "sr")) " end in objects, " (estimate(view.escaped_sr, "sr")) " in the sky; missing " (estimate(view.residual_sr, "sr")) "." }
         (unseen("Not seen", &hidden, view.seen.iter().find_map(|seen| seen.upper_limit_sr), "sr"))
@@ -124,6 +131,7 @@ fn lit(found: &Objects) -> Markup {
                         td.gauge style=(GAUGE) { (gauge(total(&lit.flux_w) / largest, LIT)) }
                     } } }
                 }
+                (more(found.lit.iter().filter(|lit| lit.upper_limit_w.is_none()).count()))
                 (unseen("Dark", &dark, found.lit.iter().find_map(|lit| lit.upper_limit_w), "W"))
             }
         }
@@ -146,6 +154,7 @@ fn thermal(warmth: &Warmth) -> Markup {
             } } }
             tfoot { tr { th { "All" } td {} td.right { (estimate(warmth.flux_w, "W")) } td.right { (estimate(warmth.photons_per_s, "/s")) } td {} } }
         }
+        (more(warmth.notable().count()))
     }
 }
 

@@ -89,8 +89,8 @@ fn ratio(detector: &DetectorResult) -> Markup {
         @if detector.upper_limit_w.is_none() {
             dl.ratio {
                 @if let Some(signal) = stray.signal_w { div { dt { "Signal" } dd { (estimate(signal, "W")) } } }
-                div { dt { "Stray" } dd { (estimate(stray.flux_w, "W")) } }
-                @if let Some(ratio) = stray.to_signal {
+                div { dt { "Stray" } dd { @if stray.flux_w.mean > 0.0 { (estimate(stray.flux_w, "W")) } @else { (limit(stray.upper_limit_w, "W")) } } }
+                @if let Some(ratio) = digest::stray_to_signal(detector) {
                     div.strong { dt { "Stray / signal" } dd { (estimate(ratio, "")) } }
                 }
                 @for (what, value, unit) in digest::counted(detector) { div { dt { (what) } dd { (estimate(value, unit)) } } }

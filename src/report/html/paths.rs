@@ -38,7 +38,7 @@ pub fn table(results: &Results, detector: &str) -> Markup {
                 tfoot { tr { th {} th { "All paths" } td.right { (total(results, detector)) } td.right { "100 %" } td colspan="3" {} } }
             }
             p.note { "Events: " b.event.t { "T" } " transmitted, " b.event.r { "R" } " reflected, " b.event.s { "S" } " scattered, "
-                b.event.a { "A" } " absorbed. Peak: largest irradiance on a grid of " (results.path_grid) " × " (results.path_grid)
+                b.event.v { "V" } " scattered in a medium. Peak: largest irradiance on a grid of " (results.path_grid) " × " (results.path_grid)
                 " cells. Rays: source rays that contributed." }
         }
     }
@@ -91,6 +91,6 @@ fn kind(event: &str) -> &'static str {
         Some('T') => "t",
         Some('R') => "r",
         Some('S') => "s",
-        _ => "a",
+        _ => "v",
     }
 }

@@ -107,7 +107,7 @@ fn uncertainty(map: &MapResult) -> Markup {
 
 fn caption(map: &MapResult, field: &Field, scale: &Scale, detector: &DetectorResult) -> Markup {
     let [rows, columns] = map.shape;
-    let quantity = if map.unit.ends_with("sr") { "Radiant intensity" } else { "Irradiance" };
+    let quantity = map.quantity();
     html! {
         h3 { (quantity) ", " (power(map.unit)) }
         dl {

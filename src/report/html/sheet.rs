@@ -71,7 +71,7 @@ fn requirement(row: &RequirementResult) -> Markup {
                 }
             }
             td.right { "< " (plain(required.limit, unit)) }
-            td.right { (factor(required.margin)) }
+            td.right { @if row.value.is_some() { (factor(required.margin)) } @else { "–" } }
             td.right { (badge(required.verdict)) small.wide { " at " (percent(row.confidence)) } }
         }
     }
@@ -124,7 +124,7 @@ pub fn pictures(results: &Results, name: &str) -> Markup {
         div.two {
             @if let Some(drawing) = &results.drawing {
                 figure.cutaway {
-                    h3 { @if ways.is_some() { "Section, with the strongest path of stray light" } @else { "Section" } }
+                    h3 { @if ways.is_some() { "Section, with a strong path of stray light" } @else { "Section" } }
                     (cutaway(drawing, &ways.unwrap_or_default()))
                 }
             }

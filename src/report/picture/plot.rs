@@ -73,7 +73,7 @@ impl<'a> Plot<'a> {
     }
 
     fn draw(mut self, map: &MapResult, system: &str) -> Canvas {
-        let quantity = if map.unit.ends_with("sr") { "intensity" } else { "irradiance" };
+        let quantity = map.quantity().to_lowercase();
         let side = if map.side == "both" { "both sides".into() } else { format!("{} side", map.side) };
         let light = map.filter.as_ref().map(|filter| format!(", {filter}")).unwrap_or_default();
         let fit = |text: String| text.chars().take(((self.canvas.width - 32) / LETTER[0]) as usize).collect::<String>();

@@ -66,6 +66,7 @@ pub struct Ghost {
     pub size_m: Option<[f64; 2]>,
     /// Best focus, along the mean ray from the detector, m: positive beyond it. `None` where the rays are parallel as well.
     pub focus_m: Option<Estimate>,
+    pub parallel: bool,
     #[serde(skip)]
     pub map: MapResult,
 }
@@ -186,6 +187,10 @@ impl<'a> Ledger<'a> {
         let lit = entry.whole.rays > 0;
         let plane = lit && entry.whole.extremes.is_some();
         let on_plane = |value: &dyn Fn(&Moments) -> f64| plane.then(|| entry.told(count, value));
+        // One batch alone has no error.
+        let resolved = |value: &dyn Fn(&Moments) -> f64| {
+            on_plane(value).filter(|known| known.mean.is_finite() && known.error.is_finite())
+        };
         let map = self.map((*detector).into(), entry, count, &names);
         Ghost {
             detector: self.scene.detectors[*detector as usize].label.clone(),
@@ -195,10 +200,11 @@ impl<'a> Ledger<'a> {
             rays: entry.whole.rays,
             upper_limit_w: (!lit).then_some(3.0 * entry.whole.begun / count as f64),
             peak_w_m2: peak(&map),
-            centroid_m: on_plane(&|m| m.centroid(0)).zip(on_plane(&|m| m.centroid(1))).map(|(x, y)| [x, y]),
-            rms_radius_m: on_plane(&Moments::rms_radius),
+            centroid_m: resolved(&|m| m.centroid(0)).zip(resolved(&|m| m.centroid(1))).map(|(x, y)| [x, y]),
+            rms_radius_m: resolved(&Moments::rms_radius),
             size_m: entry.whole.extremes.map(|extremes| extremes.map(|[from, to]| to - from)),
-            focus_m: on_plane(&Moments::focus).filter(|focus| focus.mean.is_finite() && focus.error.is_finite()),
+            focus_m: resolved(&Moments::focus),
+            parallel: on_plane(&Moments::focus).is_some_and(|focus| focus.mean.is_infinite()),
             surfaces: names,
             map,
         }
@@ -212,7 +218,10 @@ impl<'a> Ledger<'a> {
             let spread = (entry.squares[&(bin as u32)] - flux * flux / n).max(0.0);
             let (mean, error) = mean_and_error(flux, spread, count);
             let extent = map.extent[bin];
-            (map.mean[bin], map.error[bin], map.rays[bin]) = (mean / extent, error / extent, rays);
+            map.rays[bin] = rays;
+            if extent > 0.0 {
+                (map.mean[bin], map.error[bin]) = (mean / extent, error / extent);
+            }
         }
         let upper = 3.0 * entry.whole.begun / n;
         for bin in (0..map.rays.len()).filter(|&bin| map.rays[bin] == 0 && map.extent[bin] > 0.0).collect::<Vec<_>>() {

@@ -38,6 +38,7 @@ use crate::packet::{Ancestry, Event, Packet};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::source::{Birth, Reach, Source, Spectrum};
+use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Share of the rays that set off evenly, when it is known where light comes from.
@@ -46,7 +47,7 @@ const EVENLY: f64 = 0.3;
 /// What a run that goes backwards knows before it starts.
 #[derive(Debug)]
 pub struct Backward {
-    /// Every detector as a source, by the side it looks to; empty at infinity.
+    /// Every detector as a source, by the side it looks to; empty at infinity and on curved exact faces.
     detectors: Vec<Vec<Source>>,
     /// How each source of light is met.
     reaches: Vec<Reach>,
@@ -61,6 +62,13 @@ pub struct Backward {
 struct Group {
     spectrum: Spectrum,
     sources: Vec<u16>,
+}
+
+/// Whether a detector lies on exact faces that are no plane: its facets are not where light arrives.
+fn is_curved(scene: &Scene, detector: usize) -> bool {
+    let watched = |part: &u32| scene.parts[*part as usize].detectors.contains(&(detector as u16));
+    let exact = scene.part_of.iter().skip(scene.geometry.len()).any(watched);
+    exact && scene.detectors[detector].grid.place(DVec3::ZERO).is_none()
 }
 
 /// What belongs to the ray that is followed backwards.
@@ -88,7 +96,8 @@ impl Backward {
                 None => groups.push(Group { spectrum: source.spectrum.clone(), sources: vec![number as u16] }),
             }
         }
-        let detectors = (0..scene.detectors.len()).map(|detector| shining(scene, detector)).collect();
+        let start = |detector| if is_curved(scene, detector) { Vec::new() } else { shining(scene, detector) };
+        let detectors = (0..scene.detectors.len()).map(start).collect();
         Backward { detectors, reaches, groups, lit }
     }
 

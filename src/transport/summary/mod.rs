@@ -5,6 +5,7 @@ mod rows;
 
 use super::Counts;
 use super::paths::Row;
+use super::walk::quotas;
 use crate::detector::Detector;
 use crate::math::statistics::{student95, variance_of_variance};
 use crate::packet::{Class, Event, Step};
@@ -133,8 +134,7 @@ impl<const V: usize> Teller<'_, V> {
             let share = 100.0 * ledger.lost.mean / emitted;
             doubts.push(format!("{share:.2e} % of the emitted flux was lost to geometry faults"));
         }
-        // Five sigma: one run in two million by chance; 1e-12 is the rounding of a sum of many small terms.
-        if residual.mean.abs() > 5.0 * residual.error + 1e-12 * emitted || residual.mean.is_nan() {
+        if !ledger.closes() {
             doubts
                 .push(format!("the ledger does not close: residual {:.3e} ± {:.1e} W", residual.mean, residual.error));
         }
@@ -229,7 +229,9 @@ impl<const V: usize> Teller<'_, V> {
         let signal_w = Some(series::mean(&signal)).filter(|signal| signal.mean > 0.0);
         // The same number to the last digit where there is no other light.
         let flux_w = if signal_w.is_none() { flux_w } else { series::mean(&stray) };
-        StrayResult { flux_w, signal_w, to_signal: series::ratio(&signal, &stray), rays, upper_limit_w: self.upper() }
+        let brightest_batch = series::brightest(&stray);
+        let to_signal = series::ratio(&signal, &stray);
+        StrayResult { flux_w, signal_w, to_signal, rays, brightest_batch, upper_limit_w: self.upper() }
     }
 
     fn convergence(&self, d: usize) -> Convergence {
@@ -245,7 +247,10 @@ impl<const V: usize> Teller<'_, V> {
 
     /// Three times the largest flux that one source ray can carry over N, W: what an empty bin may still hide.
     fn upper(&self) -> f64 {
-        let rays = (self.sums().batches * self.counts.batch_rays) as f64;
-        3.0 * self.scene.sources.iter().map(|s| s.flux).sum::<f64>() / rays
+        let sources = &self.scene.sources;
+        let quotas = quotas(self.scene, self.counts.batch_rays);
+        let most =
+            sources.iter().zip(&quotas).map(|(source, quota)| source.flux / quota.count as f64).fold(0.0, f64::max);
+        3.0 * most / self.sums().batches as f64
     }
 }

@@ -26,6 +26,7 @@ impl<const V: usize> Teller<'_, V> {
                 percent: 100.0 * flux_w.mean / total,
                 ghost_order: 0,
                 scatter_order: 0,
+                reflectors: Vec::new(),
                 last_scatter: String::new(),
                 optical_path_m: 0.0,
                 peak_w_m2: 0.0,
@@ -57,6 +58,12 @@ impl<const V: usize> Teller<'_, V> {
             percent: 100.0 * flux_w.mean / total,
             ghost_order: row.ghosts as u32,
             scatter_order: row.scatters as u32,
+            reflectors: row
+                .steps
+                .iter()
+                .filter(|step| step.is_ghost())
+                .map(|step| label(self.scene, step).into())
+                .collect(),
             last_scatter: row.last_scatter.map_or(String::new(), |step| label(self.scene, &step).into()),
             optical_path_m: self.estimate(layout.row_path(index)).mean / flux_w.mean,
             peak_w_m2: cells.iter().copied().fold(0.0, f64::max),

@@ -5,7 +5,7 @@ const HUES = ["#4477aa", "#cc7a29", "#3f8f6b", "#b5495b", "#8a6bb0", "#3b9db3", 
 const SIDES = ["#4477aa", "#cc7a29"];
 // Classes of light, as the tables of a report have them.
 const CLASSES = {
-  signal: ["#1f7fa8"], incoming: ["#d2a000"], direct: ["#d0314c"], ghost: ["#e08a2e", "#e8a95c", "#f1cc98"], scatter: ["#8a5fc0", "#a486c9", "#bfaed6"],
+  signal: ["#1f5c7a"], incoming: ["#d2a000"], direct: ["#a3243b"], ghost: ["#d9822b", "#e8a95c", "#f1cc98"], scatter: ["#6a4c93", "#9479b8", "#bfaed6"],
 };
 
 function classColour(name) {

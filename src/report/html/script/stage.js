@@ -90,7 +90,7 @@ function startStage() {
   const key = (way) => way[value("raycolour")];
   const isChosen = (way) => state.chosen !== null && way.path !== null && way.path.join("\n") === state.chosen;
   function lightColours() {
-    const names = [...new Set(drawing.ways.filter(isFrom).map(key))];
+    const names = [...new Set(drawing.ways.filter((way) => isFrom(way) || isChosen(way)).map(key))];
     return value("raycolour") === "class" ? new Map(names.map((name) => [name, classColour(name)])) : paletteOf(names);
   }
 
